@@ -1,0 +1,22 @@
+# sightline_layer(NAME DEPENDS layer... SOURCES file... [PUBLIC_LIBS lib...] [PRIVATE_LIBS lib...])
+#
+# One folder of src/ is one layer. It may depend only on layers that stand earlier in SIGHTLINE_LAYERS (src/CMakeLists.txt), which is
+# checked here for targets and by scripts/check-layers.py for includes.
+function(sightline_layer name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;SOURCES;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
+  list(FIND SIGHTLINE_LAYERS ${name} own_index)
+  if(own_index EQUAL -1)
+    message(FATAL_ERROR "layer ${name} is not in SIGHTLINE_LAYERS")
+  endif()
+  add_library(sightline_${name} STATIC ${ARG_SOURCES})
+  target_include_directories(sightline_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
+  target_link_libraries(sightline_${name} PRIVATE sightline_options ${ARG_PRIVATE_LIBS})
+  target_link_libraries(sightline_${name} PUBLIC ${ARG_PUBLIC_LIBS})
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    list(FIND SIGHTLINE_LAYERS ${dependency} index)
+    if(index EQUAL -1 OR NOT index LESS own_index)
+      message(FATAL_ERROR "layer ${name} may not depend on ${dependency}: it is not an earlier layer")
+    endif()
+    target_link_libraries(sightline_${name} PUBLIC sightline_${dependency})
+  endforeach()
+endfunction()

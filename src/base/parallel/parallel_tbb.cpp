@@ -1,0 +1,52 @@
+// oneTBB backend of parallel_for: shares its workers with Embree's builder.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+
+#include "base/core/error.h"
+#include "base/parallel/parallel.h"
+
+namespace sightline {
+
+void parallel_for(const Context& context, std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+  if (count == 0) return;
+  grain = std::max<std::size_t>(grain, 1);
+  const std::size_t chunk_count = (count + grain - 1) / grain;
+  const auto run_chunk = [&](std::size_t chunk) {
+    context.check_cancelled();
+    body(chunk * grain, std::min(count, (chunk + 1) * grain));
+  };
+  const int threads = context.thread_count();
+  if (threads == 1 || chunk_count == 1) {
+    for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) run_chunk(chunk);
+    return;
+  }
+  // A shared counter hands chunks out in order: neighbouring chunks run at about the same time, which caches like, and long chunks at the
+  // start do not wait behind a static split.
+  tbb::task_arena arena(threads);
+  std::atomic<std::size_t> next{0};
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, threads, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          for (int i = range.begin(); i != range.end(); ++i) {
+            try {
+              for (std::size_t chunk; (chunk = next.fetch_add(1, std::memory_order_relaxed)) < chunk_count;) run_chunk(chunk);
+            } catch (...) {
+              next.store(chunk_count, std::memory_order_relaxed);
+              throw;
+            }
+          }
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+int worker_index() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
+
+}  // namespace sightline

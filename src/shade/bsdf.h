@@ -1,0 +1,46 @@
+// A BSDF as a value: one of the reflectance models with its parameters already looked up.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "shade/bsdf_types.h"
+#include "shade/coated_diffuse.h"
+#include "shade/conductor.h"
+#include "shade/dielectric.h"
+#include "shade/diffuse_transmission.h"
+#include "shade/lambert.h"
+#include "shade/metallic_roughness.h"
+#include "shade/phong.h"
+
+namespace sightline {
+
+/// Small, trivially copyable; made by make_bsdf for one shading point.
+class Bsdf {
+ public:
+  using Model = std::variant<Lambert, MetallicRoughness, Conductor, Dielectric, CoatedDiffuse, Phong, DiffuseTransmission>;
+
+  Bsdf() = default;
+  explicit Bsdf(Model model) : model_(std::move(model)) {}
+
+  BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const {
+    return std::visit([&](const auto& m) { return m.evaluate(wo, wi, mode); }, model_);
+  }
+  std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const {
+    return std::visit([&](const auto& m) { return m.sample(wo, u_lobe, u, mode); }, model_);
+  }
+  Color albedo() const {
+    return std::visit([](const auto& m) { return m.albedo(); }, model_);
+  }
+  bool is_delta() const {
+    return std::visit([](const auto& m) { return m.is_delta(); }, model_);
+  }
+  /// The Lambert model if that is all there is: batches of these take the vector path.
+  const Lambert* lambert() const { return std::get_if<Lambert>(&model_); }
+  const Model& model() const { return model_; }
+
+ private:
+  Model model_;
+};
+
+}  // namespace sightline

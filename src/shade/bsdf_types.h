@@ -1,0 +1,35 @@
+// The contract that every BSDF keeps.
+#pragma once
+
+#include <optional>
+
+#include "base/math/vec.h"
+
+namespace sightline {
+
+/// Which quantity is transported: radiance from lights to the eye, or importance. Refraction scales radiance by 1/eta².
+enum class TransportMode { radiance, importance };
+
+/// f(wo, wi) |cos wi| and the density (solid angle) with which sample() would choose wi. Delta parts contribute nothing here.
+struct BsdfEval {
+  Color f_cos{0};
+  float pdf = 0;
+};
+
+/// A sampled direction; `weight` = f |cos| / pdf, the exact ratio for delta parts.
+struct BsdfSample {
+  Vec3 wi{0, 0, 1};
+  Color weight{0};
+  float pdf = 0;             ///< solid angle; for delta parts the probability of having chosen them
+  bool is_delta = false;
+  bool is_transmission = false;
+  float eta = 1;             ///< index of refraction ratio passed (far side over near side), 1 for reflection
+};
+
+// A BSDF class has, in the local shading frame (z = shading normal, wo and wi point away from the surface, wo.z may be negative):
+//   BsdfEval evaluate(Vec3 wo, Vec3 wi, TransportMode) const;
+//   std::optional<BsdfSample> sample(Vec3 wo, float u_lobe, Vec2 u, TransportMode) const;   // u in [0,1)
+//   Color albedo() const;                                                                    // for the albedo AOV, in [0,1]
+//   bool is_delta() const;                                                                   // no non-delta part: skip light sampling
+
+}  // namespace sightline

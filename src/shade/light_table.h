@@ -1,0 +1,88 @@
+// All lights of a scene, ready to be sampled.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "base/core/aligned.h"
+#include "base/core/context.h"
+#include "base/math/bounds.h"
+#include "scene/scene.h"
+#include "texture/texture_set.h"
+
+namespace sightline {
+
+/// An entry of the table: one point, spot, directional, rectangle, disk or sphere light, one emissive triangle, or the environment.
+inline constexpr std::uint32_t kNoLight = 0xffffffffu;
+
+/// A point on a light as seen from a shading point.
+struct LightSample {
+  Vec3 wi{0, 0, 1};          ///< unit direction towards the light
+  float distance = 0;        ///< to the light point; +infinity for directional lights and environments
+  Vec3 point{0};             ///< on the light (finite lights)
+  Vec3 normal{0};            ///< of the emitting surface; 0 for points, directional lights and environments
+  float point_error = 0;     ///< absolute bound on the rounding error of `point`
+  Color radiance{0};         ///< arriving, unoccluded; for delta lights intensity / distance² or irradiance
+  float pdf = 0;             ///< solid angle, selection included; selection probability alone for delta lights; 0 = no sample
+  bool is_delta = false;
+  bool is_mesh = false;      ///< on geometry that rays can hit (MIS with BSDF sampling applies)
+  std::uint32_t light = kNoLight;
+};
+
+/// Many light samples, structure of arrays (padded to kLanes).
+struct LightSampleBatch {
+  Vec3Batch wi, point, normal, radiance;
+  AlignedVector<float> distance, point_error, pdf;
+  AlignedVector<std::uint8_t> is_delta, is_mesh;
+  AlignedVector<std::uint32_t> light;
+  void resize(std::size_t n);
+};
+
+/// How a light is chosen for a shading point: an interface, so that smarter choices can replace choice by power.
+class LightPicker {
+ public:
+  struct Pick {
+    std::uint32_t light = kNoLight;
+    float probability = 0;
+    float u = 0;  ///< the random number stretched back to [0,1)
+  };
+  virtual ~LightPicker() = default;
+  virtual Pick pick(const Vec3& position, const Vec3& normal, float u) const = 0;
+  virtual float probability(const Vec3& position, const Vec3& normal, std::uint32_t light) const = 0;
+};
+
+/// Immutable once built. Thread-safe.
+class LightTable {
+ public:
+  /// `bounds` are the scene's (for powers of directional lights and environments).
+  LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context);
+  ~LightTable();
+
+  std::size_t size() const;          ///< entries, environment included
+  bool has_environment() const;
+  /// Chooses a light by `u_pick` and a point on it by `u`. pdf 0 where the light cannot reach `position`. `normal` = 0 allowed.
+  LightSample sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const;
+  /// The same for many points; random numbers as arrays.
+  void sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
+              std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
+  /// Entry of an emissive triangle (HitBatch::instance, primitive), or of a sphere with kSphereBit; kNoLight if it does not emit.
+  std::uint32_t light_of(std::uint32_t instance, std::uint32_t primitive) const;
+  /// Density with which sample() would have produced the point that a ray from `position` along unit `direction` hit on entry `light`.
+  float pdf(const Vec3& position, const Vec3& normal, std::uint32_t light, const Vec3& hit_point, const Vec3& hit_normal,
+            const Vec3& direction) const;
+  /// Radiance emitted by a hit entry towards -direction, at texture point `point`.
+  Color emission(std::uint32_t light, const TexturePoint& point, bool front_side) const;
+  /// Radiance of the environment from unit `direction` (0 without one) and the density of sampling it.
+  Color environment(const Vec3& direction) const;
+  float environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const;
+  /// Total power by entry, W, as the picker sees it.
+  float power(std::uint32_t light) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace sightline

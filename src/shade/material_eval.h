@@ -1,0 +1,26 @@
+// From a scene's material at a texture point to the BSDF there.
+#pragma once
+
+#include "base/math/frame.h"
+#include "scene/scene.h"
+#include "shade/bsdf.h"
+#include "texture/texture_set.h"
+
+namespace sightline {
+
+/// The BSDF of `material` (invalid = Lambert 0.7) at a point. `u_mix` in [0,1) resolves mix materials. Interface materials and back faces
+/// are the caller's business (is_interface).
+Bsdf make_bsdf(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, float u_mix);
+
+/// The material that a mix resolves to, `u_mix` being rescaled on the way; itself for others.
+MaterialId resolve_mix(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, float& u_mix);
+
+bool is_interface(const Scene& scene, MaterialId material);
+
+/// Normal and bump mapping: `frame` is the interpolated shading frame (normal, dp/du tangent), `dp_du`, `dp_dv` the surface's parametric
+/// derivatives, `outside` = +1 where the ray is on the geometric normal's side. Returns a frame whose normal keeps wo on the same side as
+/// the geometric normal does.
+Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, const Frame3& frame,
+                     const Vec3& dp_du, const Vec3& dp_dv, const Vec3& geometric_normal);
+
+}  // namespace sightline

@@ -1,0 +1,54 @@
+// Finds what rays hit. Every acceleration structure implements this one interface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "base/core/context.h"
+#include "base/math/bounds.h"
+#include "scene/scene.h"
+#include "trace/ray_batch.h"
+
+namespace sightline {
+
+class TextureSet;
+
+/// Bytes held, for the statistics and the memory budget.
+struct TracerMemory {
+  std::uint64_t acceleration_bytes = 0;  ///< hierarchy and what it copied
+  std::uint64_t peak_build_bytes = 0;
+};
+
+/// An immutable acceleration structure over one posed Scene. Safe to use from any thread. Alpha-masked surfaces (AlphaMode::mask, blend
+/// at its cutoff) are transparent to rays where the texture says so.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  /// Closest hits in [t_near, t_far]; `hits` is resized to rays.size.
+  virtual void intersect(const RayBatch& rays, HitBatch& hits, BatchKind kind, RayCounts& counts) const = 0;
+  /// 1 where something lies in [t_near, t_far]; `occluded` has at least padded(rays.size) elements.
+  virtual void occluded(const RayBatch& rays, std::span<std::uint8_t> occluded, BatchKind kind, RayCounts& counts) const = 0;
+  virtual Bounds bounds() const = 0;
+  virtual TracerMemory memory() const = 0;
+  virtual std::string_view name() const = 0;
+};
+
+/// How a World traces.
+struct TracerOptions {
+  bool robust = true;       ///< watertight Embree traversal (RTC_SCENE_FLAG_ROBUST)
+  bool compact = false;     ///< less memory, slower
+  bool alpha_masks = true;
+};
+
+/// Tests every primitive: the truth that other structures are compared with. Keeps a reference to the scene's arrays.
+std::unique_ptr<Tracer> make_brute_tracer(const Scene& scene, const TextureSet& textures, const TracerOptions& options,
+                                          const Context& context);
+
+/// Embree (3.13 or 4). Geometry used once and not animated is one static scene in world space; the rest are instances. `previous` (may be
+/// null, must be an Embree tracer of an earlier version of the scene) lends the committed mesh scenes that did not change.
+std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, const TextureSet& textures, const TracerOptions& options,
+                                           const Context& context, const Tracer* previous = nullptr);
+
+}  // namespace sightline

@@ -1,0 +1,46 @@
+// Hit points reconstructed from barycentrics, in batches.
+#pragma once
+
+#include <cstdint>
+
+#include "base/core/aligned.h"
+#include "base/math/frame.h"
+#include "base/math/vec.h"
+#include "scene/ids.h"
+#include "texture/texture_set.h"
+#include "trace/ray_batch.h"
+
+namespace sightline {
+
+/// What a path needs of every hit: structure of arrays, padded to kLanes. Lanes without a hit have material kNoHit and zero vectors.
+struct SurfaceBatch {
+  Vec3Batch position;          ///< from barycentrics on the original vertices
+  Vec3Batch geometric_normal;  ///< unit, by winding (not flipped towards the ray)
+  Vec3Batch shading_normal;    ///< unit, interpolated, on the geometric normal's side
+  AlignedVector<float> error;  ///< bound on the distance of `position` from the true surface point, per component
+  AlignedVector<std::uint32_t> material;  ///< index into Scene::materials, kDefaultMaterial, or kNoHit
+  AlignedVector<std::uint32_t> light;     ///< entry of the LightTable that emits here, or kNoLight
+  AlignedVector<std::uint8_t> plain;      ///< 1: untextured Lambert without normal map: albedo holds all there is to know
+  Vec3Batch albedo;                       ///< valid where plain
+  std::size_t size = 0;
+  void resize(std::size_t n);
+};
+
+inline constexpr std::uint32_t kDefaultMaterial = 0xfffffffeu;
+
+/// The rest, for one hit: computed only where a material needs it.
+struct SurfaceDetail {
+  Vec2 uv{0};
+  Vec3 dp_du{1, 0, 0}, dp_dv{0, 1, 0};
+  Frame3 frame;           ///< shading frame before normal maps: normal and tangent
+  TexturePoint texture;   ///< uv with footprint
+};
+
+/// Origin of a ray that leaves `position` towards the side of unit geometric normal `n` on which `direction` lies, moved by the error
+/// bound so that it cannot hit its own surface ([Waechter2019] and pbrt's error-bounds idea).
+inline Vec3 offset_origin(const Vec3& position, const Vec3& n, float error, const Vec3& direction) {
+  const float distance = error * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
+  return position + (glm::dot(direction, n) >= 0 ? distance : -distance) * n;
+}
+
+}  // namespace sightline

@@ -1,0 +1,51 @@
+// A scene that can be traced and shaded: tracer, lights and textures, built once and then immutable.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "base/core/context.h"
+#include "scene/scene.h"
+#include "shade/light_table.h"
+#include "texture/texture_set.h"
+#include "trace/tracer.h"
+#include "world/surface.h"
+
+namespace sightline {
+
+struct WorldOptions {
+  enum class Backend { embree, brute } backend = Backend::embree;
+  TracerOptions tracer;
+};
+
+/// Immutable; safe to share between threads. Keeps its Scene.
+class World {
+ public:
+  /// Materialises mesh sources (within the memory budget, else Error{resource}), then builds tracer, textures and light table. `scene`
+  /// must already be posed.
+  static std::shared_ptr<const World> build(Scene scene, const WorldOptions& options, const Context& context);
+  /// A World of the edited scene that shares with `previous` all that the edit did not touch (mesh scenes by array identity, textures,
+  /// lights). Moving a static mesh promotes it to an instance, with one rebuild of the static part.
+  static std::shared_ptr<const World> edit(const World& previous, Scene scene, const Context& context);
+  ~World();
+
+  const Scene& scene() const;
+  const Tracer& tracer() const;
+  const TextureSet& textures() const;
+  const LightTable& lights() const;
+  Bounds bounds() const;
+  std::uint64_t acceleration_bytes() const;
+
+  /// Positions, normals, error bounds and materials of hits. `spread` (may be empty) is the width of each ray's cone at its origin and
+  /// per unit length, used for texture footprints.
+  void surfaces(const RayBatch& rays, const HitBatch& hits, SurfaceBatch& surfaces) const;
+  /// uv, derivatives, frame and texture footprint of one hit; `cone_width` is the ray cone's diameter at the hit in world units.
+  SurfaceDetail detail(const RayBatch& rays, const HitBatch& hits, std::size_t i, float cone_width) const;
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<const Impl> impl);
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace sightline
