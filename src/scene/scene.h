@@ -51,11 +51,15 @@ Bounds scene_bounds(const Scene& scene);
 std::uint64_t instanced_triangle_count(const Scene& scene);
 /// Bytes of the mesh arrays and images (shared ones once).
 std::uint64_t scene_bytes(const Scene& scene);
-/// The scene with every instance, camera and light that hangs on a node placed as at time_s (clamped to the tracks' ends).
+/// World-from-node matrices of all nodes at time_s (clamped to the tracks' ends).
+std::vector<Mat4> node_matrices(const Scene& scene, float time_s);
+/// The scene with every instance, camera and light that hangs on a node placed as at time_s. Lights are then in world space and leave
+/// their node, so another time is posed from the original scene.
 Scene pose(Scene scene, float time_s);
 /// A camera that frames `bounds` as docs/conventions.md says: from direction (1, 0.6, 1), 40° on the narrower axis.
 Camera framing_camera(const Bounds& bounds);
-/// Stable hash of everything that can change a picture.
+/// Stable hash of everything that can change a picture: names, warnings and the output's name do not count. A mesh source counts by its
+/// name, counts and box.
 std::uint64_t scene_hash(const Scene& scene);
 
 }  // namespace sightline
