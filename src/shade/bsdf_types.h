@@ -20,10 +20,10 @@ struct BsdfEval {
 struct BsdfSample {
   Vec3 wi{0, 0, 1};
   Color weight{0};
-  float pdf = 0;             ///< solid angle; for delta parts the probability of having chosen them
+  float pdf = 0;  ///< solid angle; for delta parts the probability of having chosen them
   bool is_delta = false;
   bool is_transmission = false;
-  float eta = 1;             ///< index of refraction ratio passed (far side over near side), 1 for reflection
+  float eta = 1;  ///< index of refraction ratio passed (far side over near side), 1 for reflection
 };
 
 // A BSDF class has, in the local shading frame (z = shading normal, wo and wi point away from the surface, wo.z may be negative):

@@ -67,9 +67,7 @@ inline Vec3 sample_uniform_sphere(const Vec2& u) {
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), z};
 }
 inline float pdf_uniform_sphere() { return 0.25f * kInvPi; }
-inline Vec2 invert_uniform_sphere(const Vec3& w) {
-  return {std::clamp(0.5f * (1 - w.z), 0.f, kOneMinusEpsilon), azimuth_turn(w.x, w.y)};
-}
+inline Vec2 invert_uniform_sphere(const Vec3& w) { return {std::clamp(0.5f * (1 - w.z), 0.f, kOneMinusEpsilon), azimuth_turn(w.x, w.y)}; }
 
 /// Barycentrics (b0, b1) of a triangle, uniform by area, by folding the square [Heitz2019]; b2 = 1 - b0 - b1.
 inline Vec2 sample_uniform_triangle(const Vec2& u) {

@@ -1,0 +1,82 @@
+#include "shade/coated_diffuse.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/sample/warp.h"
+#include "shade/fresnel.h"
+#include "shade/ggx_albedo.h"
+
+namespace sightline {
+
+CoatedDiffuse::CoatedDiffuse(const Color& reflectance, float eta, const Ggx& ggx)
+    : eta_(eta > 1 ? std::min(eta, kGgxAlbedoMaxEta) : 1.f), ggx_(ggx) {
+  const float mean_reflectance = ggx_.is_smooth() ? fresnel_dielectric_diffuse(eta_) : ggx_dielectric_mean_albedo(ggx_, eta_);
+  mean_transmittance_ = 1 - mean_reflectance;
+  // Reciprocity ties what is let out to what is let in: eta² (1 - Ri) = 1 - Re.
+  const Color rho = glm::clamp(reflectance, 0.f, 1.f);
+  base_ = rho / (eta_ * eta_ * (1.f - rho) + rho * mean_transmittance_);
+}
+
+float CoatedDiffuse::coat_reflectance(float cos_theta) const {
+  return ggx_.is_smooth() ? fresnel_dielectric(cos_theta, eta_) : ggx_dielectric_albedo(cos_theta, ggx_, eta_);
+}
+
+float CoatedDiffuse::specular_probability(float coat_reflectance_o) const {
+  const float diffuse = (1 - coat_reflectance_o) * mean_transmittance_ * luminance(base_);
+  const float total = coat_reflectance_o + diffuse;
+  return total > 0 ? coat_reflectance_o / total : 0.f;
+}
+
+BsdfEval CoatedDiffuse::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
+  if (!(wo.z * wi.z > 0)) return {};
+  const float cos_o = std::fabs(wo.z), cos_i = std::fabs(wi.z);
+  const float reflected_o = coat_reflectance(cos_o);
+  const float specular = specular_probability(reflected_o);
+  const float lambert = cos_i * kInvPi;
+  BsdfEval result{base_ * ((1 - reflected_o) * (1 - coat_reflectance(cos_i)) * lambert), (1 - specular) * lambert};
+  if (!ggx_.is_smooth()) {
+    Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
+    if (m.z < 0) m = -m;
+    const float half_distribution = 0.5f * ggx_.distribution(m);
+    const float fresnel = fresnel_dielectric(std::fabs(glm::dot(wo, m)), eta_);
+    result.f_cos += Color(fresnel * half_distribution * ggx_.shadowing_over_cosine(wo, wi));
+    result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
+  }
+  return result;
+}
+
+std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
+  if (wo.z == 0) return std::nullopt;
+  const float side = wo.z < 0 ? -1.f : 1.f;
+  const float reflected_o = coat_reflectance(std::fabs(wo.z));
+  const float specular = specular_probability(reflected_o);
+  BsdfSample s;
+  if (u_lobe < specular) {
+    if (ggx_.is_smooth()) {
+      s.wi = Vec3(-wo.x, -wo.y, wo.z);
+      s.weight = Color(reflected_o / specular);
+      s.pdf = specular;
+      s.is_delta = true;
+      return s;
+    }
+    const Vec3 upper{wo.x, wo.y, side * wo.z};
+    s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
+  } else {
+    s.wi = sample_cosine_hemisphere(u);
+  }
+  if (!(s.wi.z > 0)) return std::nullopt;
+  s.wi.z *= side;
+  const BsdfEval e = evaluate(wo, s.wi, mode);
+  if (!(e.pdf > 0)) return std::nullopt;
+  s.pdf = e.pdf;
+  s.weight = e.f_cos / e.pdf;
+  return s;
+}
+
+Color CoatedDiffuse::albedo() const {
+  // Under uniform light: the mean reflectance of the coat and what comes back through it.
+  return glm::clamp(Color(1 - mean_transmittance_) + base_ * (mean_transmittance_ * mean_transmittance_), 0.f, 1.f);
+}
+
+}  // namespace sightline

@@ -1,0 +1,35 @@
+// Plastic, varnish, ceramics: Lambert below a dielectric coat, as one analytic model.
+#pragma once
+
+#include <optional>
+
+#include "shade/bsdf_types.h"
+#include "shade/ggx.h"
+
+namespace sightline {
+
+/// f = GGX reflection of the coat (a delta if it is smooth) + T(wo) T(wi) reflectance / (pi eta² (1 - reflectance Ri)), where T is what the
+/// coat lets in and Ri its mean reflectance seen from below: all bounces between base and coat, summed [Wolff1998]. Reciprocal, and it
+/// returns all energy for reflectance 1. `evaluate` of a smooth coat covers the diffuse part only.
+class CoatedDiffuse {
+ public:
+  CoatedDiffuse() : CoatedDiffuse(Color(0.5f), 1.5f, Ggx()) {}
+  /// `eta` is taken into [1, 3]: a coat lighter than air makes no sense, and none is denser than that.
+  CoatedDiffuse(const Color& reflectance, float eta, const Ggx& ggx);
+
+  BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  Color albedo() const;
+  bool is_delta() const { return false; }
+
+ private:
+  float coat_reflectance(float cos_theta) const;
+  float specular_probability(float coat_reflectance_o) const;
+
+  Color base_;  // reflectance / (eta² (1 - reflectance Ri))
+  float eta_;
+  float mean_transmittance_;  // of the coat from outside
+  Ggx ggx_;
+};
+
+}  // namespace sightline

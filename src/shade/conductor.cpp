@@ -1,0 +1,44 @@
+#include "shade/conductor.h"
+
+#include "shade/fresnel.h"
+
+namespace sightline {
+
+BsdfEval Conductor::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
+  if (ggx_.is_smooth() || !(wo.z * wi.z > 0)) return {};
+  Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
+  if (m.z < 0) m = -m;
+  const float cosine = std::fabs(glm::dot(wo, m));
+  const float half_distribution = 0.5f * ggx_.distribution(m);
+  return {tint_ * fresnel_conductor(cosine, eta_, k_) * (half_distribution * ggx_.shadowing_over_cosine(wo, wi)),
+          half_distribution * ggx_.masking_over_cosine(wo)};
+}
+
+std::optional<BsdfSample> Conductor::sample(const Vec3& wo, float, const Vec2& u, TransportMode) const {
+  if (wo.z == 0) return std::nullopt;
+  const float side = wo.z < 0 ? -1.f : 1.f;
+  BsdfSample s;
+  if (ggx_.is_smooth()) {
+    s.wi = Vec3(-wo.x, -wo.y, wo.z);
+    s.weight = tint_ * fresnel_conductor(std::fabs(wo.z), eta_, k_);
+    s.pdf = 1;
+    s.is_delta = true;
+    return s;
+  }
+  const Vec3 upper{wo.x, wo.y, side * wo.z};
+  const Vec3 m = ggx_.sample_visible(upper, u);
+  s.wi = reflect_about(upper, m);
+  if (!(s.wi.z > 0)) return std::nullopt;
+  const float masking = ggx_.masking_over_cosine(upper);
+  s.pdf = 0.5f * ggx_.distribution(m) * masking;
+  s.weight = tint_ * fresnel_conductor(glm::dot(upper, m), eta_, k_) * (ggx_.shadowing_over_cosine(upper, s.wi) / masking);
+  s.wi.z *= side;
+  return s;
+}
+
+Color Conductor::albedo() const {
+  // Normal incidence stands for the whole: metals change little until grazing angles.
+  return glm::clamp(tint_ * fresnel_conductor(1, eta_, k_), 0.f, 1.f);
+}
+
+}  // namespace sightline

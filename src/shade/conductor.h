@@ -1,0 +1,28 @@
+// Metals: a mirror or a GGX surface with complex index of refraction.
+#pragma once
+
+#include <optional>
+
+#include "shade/bsdf_types.h"
+#include "shade/ggx.h"
+
+namespace sightline {
+
+/// Reflects on both sides. Single scattering only: a rough white conductor of alpha 1 loses about half of its energy at normal incidence
+/// to the second and later bounces between micro-facets.
+class Conductor {
+ public:
+  Conductor() = default;
+  Conductor(const Color& eta, const Color& k, const Color& tint, const Ggx& ggx) : eta_(eta), k_(k), tint_(tint), ggx_(ggx) {}
+
+  BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  Color albedo() const;
+  bool is_delta() const { return ggx_.is_smooth(); }
+
+ private:
+  Color eta_{0.2f}, k_{3.9f}, tint_{1};
+  Ggx ggx_;
+};
+
+}  // namespace sightline

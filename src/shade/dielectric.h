@@ -1,0 +1,32 @@
+// Glass, water, and thin panes.
+#pragma once
+
+#include <optional>
+
+#include "shade/bsdf_types.h"
+#include "shade/ggx.h"
+
+namespace sightline {
+
+/// Interface between the outside (+z) and the inside (-z) with index ratio eta = inside over outside: smooth (delta) or GGX [Walter2007].
+/// A thin one is a smooth slab whose two faces are one: light goes straight on, reflectance sums all its inner reflections.
+class Dielectric {
+ public:
+  Dielectric() : Dielectric(1.5f, Ggx(), false) {}
+  Dielectric(float eta, const Ggx& ggx, bool thin);
+
+  BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  Color albedo() const { return Color(1); }
+  bool is_delta() const { return delta_; }
+
+ private:
+  std::optional<BsdfSample> sample_smooth(const Vec3& wo, float u_lobe, TransportMode mode) const;
+
+  float eta_;
+  Ggx ggx_;
+  bool thin_;
+  bool delta_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,26 @@
+// Ideal diffuse reflection and transmission: leaves, paper, curtains.
+#pragma once
+
+#include <optional>
+
+#include "shade/bsdf_types.h"
+
+namespace sightline {
+
+/// f = reflectance / pi on the side of wo and transmittance / pi on the other. Where the two add up to more than 1 both are scaled down.
+class DiffuseTransmission {
+ public:
+  DiffuseTransmission() : DiffuseTransmission(Color(0.25f), Color(0.25f)) {}
+  DiffuseTransmission(const Color& reflectance, const Color& transmittance);
+
+  BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
+  std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  Color albedo() const { return reflectance_ + transmittance_; }
+  bool is_delta() const { return false; }
+
+ private:
+  Color reflectance_, transmittance_;
+  float reflect_probability_;
+};
+
+}  // namespace sightline

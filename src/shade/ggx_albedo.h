@@ -1,0 +1,28 @@
+// How much a GGX surface reflects in all: what models with a layer below need to know so that light is shared, not invented.
+#pragma once
+
+#include "base/math/vec.h"
+#include "shade/ggx.h"
+
+namespace sightline {
+
+/// Relative index of refraction up to which the tables of dielectric albedo reach.
+inline constexpr float kGgxAlbedoMaxEta = 3;
+
+/// Directional albedo of the reflection by a dielectric GGX surface seen from outside at `cos_theta` >= 0, single scattering; 1 <= eta <=
+/// kGgxAlbedoMaxEta. Exact if smooth, else interpolated in a table that errs upwards, by at most 0.01. An anisotropic surface counts as the
+/// isotropic one of the same mean slope area.
+float ggx_dielectric_albedo(float cos_theta, const Ggx& ggx, float eta);
+/// Its mean under uniform light (cosine-weighted).
+float ggx_dielectric_mean_albedo(const Ggx& ggx, float eta);
+
+/// The same for a GGX surface with Schlick's Fresnel.
+Color ggx_schlick_albedo(const Color& f0, float cos_theta, const Ggx& ggx);
+Color ggx_schlick_mean_albedo(const Color& f0, const Ggx& ggx);
+
+/// The numbers behind the tables, by quadrature: how they were made, and what they are tested against. For Schlick's Fresnel the albedo is
+/// f0 x + (1 - f0) y.
+float integrate_ggx_dielectric_albedo(float cos_theta, float alpha, float eta, int resolution);
+Vec2 integrate_ggx_schlick_albedo(float cos_theta, float alpha, int resolution);
+
+}  // namespace sightline

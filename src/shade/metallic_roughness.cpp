@@ -1,0 +1,85 @@
+#include "shade/metallic_roughness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/sample/warp.h"
+#include "shade/fresnel.h"
+#include "shade/ggx_albedo.h"
+
+namespace sightline {
+
+namespace {
+
+constexpr float kDielectricF0 = 0.04f;
+
+}  // namespace
+
+MetallicRoughness::MetallicRoughness(const Color& base_color, float metallic, float roughness) {
+  const Color base = glm::clamp(base_color, 0.f, 1.f);
+  const float metal = std::clamp(metallic, 0.f, 1.f), rough = std::clamp(roughness, 0.f, 1.f);
+  ggx_ = Ggx(rough * rough, rough * rough);
+  f0_ = glm::mix(Color(kDielectricF0), base, metal);
+  const Color mean_specular = ggx_schlick_mean_albedo(f0_, ggx_);
+  diffuse_ = (1 - metal) * base / glm::max(1.f - mean_specular, Color(1e-6f));
+}
+
+Color MetallicRoughness::specular_albedo(float cos_theta) const { return ggx_schlick_albedo(f0_, cos_theta, ggx_); }
+
+float MetallicRoughness::specular_probability(const Color& specular_albedo_o) const {
+  const float specular = luminance(specular_albedo_o), diffuse = luminance((1.f - specular_albedo_o) * diffuse_);
+  return specular + diffuse > 0 ? specular / (specular + diffuse) : 0.f;
+}
+
+BsdfEval MetallicRoughness::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
+  if (!(wo.z * wi.z > 0)) return {};
+  const Color specular_o = specular_albedo(std::fabs(wo.z));
+  const float specular = specular_probability(specular_o);
+  const float cos_i = std::fabs(wi.z);
+  const float lambert = cos_i * kInvPi;
+  BsdfEval result{diffuse_ * (1.f - specular_o) * (1.f - specular_albedo(cos_i)) * lambert, (1 - specular) * lambert};
+  if (!ggx_.is_smooth()) {
+    Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
+    if (m.z < 0) m = -m;
+    const float half_distribution = 0.5f * ggx_.distribution(m);
+    result.f_cos += fresnel_schlick(f0_, std::fabs(glm::dot(wo, m))) * (half_distribution * ggx_.shadowing_over_cosine(wo, wi));
+    result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
+  }
+  return result;
+}
+
+std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
+  if (wo.z == 0) return std::nullopt;
+  const float side = wo.z < 0 ? -1.f : 1.f;
+  const Color specular_o = specular_albedo(std::fabs(wo.z));
+  const float specular = specular_probability(specular_o);
+  BsdfSample s;
+  if (u_lobe < specular) {
+    if (ggx_.is_smooth()) {
+      s.wi = Vec3(-wo.x, -wo.y, wo.z);
+      s.weight = specular_o / specular;
+      s.pdf = specular;
+      s.is_delta = true;
+      return s;
+    }
+    const Vec3 upper{wo.x, wo.y, side * wo.z};
+    s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
+  } else {
+    s.wi = sample_cosine_hemisphere(u);
+  }
+  if (!(s.wi.z > 0)) return std::nullopt;
+  s.wi.z *= side;
+  const BsdfEval e = evaluate(wo, s.wi, mode);
+  if (!(e.pdf > 0)) return std::nullopt;
+  s.pdf = e.pdf;
+  s.weight = e.f_cos / e.pdf;
+  return s;
+}
+
+Color MetallicRoughness::albedo() const {
+  // Under uniform light, with E the mean albedo of the GGX part: E + (1 - E)² diffuse.
+  const Color mean_specular = ggx_schlick_mean_albedo(f0_, ggx_);
+  return glm::clamp(mean_specular + (1.f - mean_specular) * (1.f - mean_specular) * diffuse_, 0.f, 1.f);
+}
+
+}  // namespace sightline
