@@ -18,9 +18,9 @@ MaterialId resolve_mix(const Scene& scene, const TextureSet& textures, MaterialI
 bool is_interface(const Scene& scene, MaterialId material);
 
 /// Normal and bump mapping: `frame` is the interpolated shading frame (normal, dp/du tangent), `dp_du`, `dp_dv` the surface's parametric
-/// derivatives, `outside` = +1 where the ray is on the geometric normal's side. Returns a frame whose normal keeps wo on the same side as
-/// the geometric normal does.
+/// derivatives. Returns a frame whose normal lies on the side of `geometric_normal` and, given unit `wo`, sees wo on the side on which the
+/// geometric normal sees it; this holds also for materials without a map, whose interpolated normals may fail it. wo = 0: not known.
 Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, const Frame3& frame,
-                     const Vec3& dp_du, const Vec3& dp_dv, const Vec3& geometric_normal);
+                     const Vec3& dp_du, const Vec3& dp_dv, const Vec3& geometric_normal, const Vec3& wo = Vec3(0));
 
 }  // namespace sightline
