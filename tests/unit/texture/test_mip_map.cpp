@@ -150,7 +150,8 @@ TEST(MipMap, ByteEncoderIsTheInverseOfTheDecoder) {
     const ByteEncoder encode(decoder.color);
     for (std::size_t i = 0; i < 256; ++i) {
       EXPECT_EQ(encode(decoder.color[i]), i);
-      if (i > 0) EXPECT_EQ(encode(0.51f * decoder.color[i] + 0.49f * decoder.color[i - 1]), i);
+      const float below = decoder.color[i > 0 ? i - 1 : 0];
+      EXPECT_EQ(encode(0.51f * decoder.color[i] + 0.49f * below), i);
     }
     EXPECT_EQ(encode(-1), 0);
     EXPECT_EQ(encode(7), 255);

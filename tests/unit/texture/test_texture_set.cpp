@@ -19,6 +19,13 @@ ImageId add_image(Scene& scene, int width, int height, std::vector<float> values
   return ImageId(scene.images.size() - 1);
 }
 
+ImageTexture image_texture(ImageId image, TextureFilter filter = TextureFilter::trilinear) {
+  ImageTexture texture;
+  texture.image = image;
+  texture.filter = filter;
+  return texture;
+}
+
 TEST(TextureSet, InvalidIdIsWhiteAndParametersMultiply) {
   Scene scene;
   const TextureId half = constant(scene, 0.5f);
@@ -43,7 +50,9 @@ TEST(TextureSet, ScaleMixInvertAndUvTransform) {
   const TextureId a = constant(scene, 2), b = constant(scene, 6), quarter = constant(scene, 0.25f);
   const TextureId scaled = add(scene, ScaleTexture{a, b});
   const TextureId mixed = add(scene, MixTexture{a, b, quarter});
-  ImageTexture image{.image = add_image(scene, 2, 1, {0.25f, 0.5f}), .filter = TextureFilter::nearest, .scale = 3, .invert = true};
+  ImageTexture image = image_texture(add_image(scene, 2, 1, {0.25f, 0.5f}), TextureFilter::nearest);
+  image.scale = 3;
+  image.invert = true;
   const TextureId inverted = add(scene, image);
   // Mirrors u: the left half shows the right texel.
   image.invert = false;
@@ -84,7 +93,7 @@ TEST(TextureSet, MeansAreThoseOfTheUnitSquare) {
   const TextureId one = constant(scene, 1), three = constant(scene, 3);
   const TextureId board = add(scene, CheckerboardTexture{one, three, {glm::mat2(4, 0, 0, 4), {0, 0}}});
   const TextureId single = add(scene, CheckerboardTexture{one, three, {}});
-  const TextureId image = add(scene, ImageTexture{.image = add_image(scene, 2, 2, {1, 2, 3, 6}), .filter = TextureFilter::nearest});
+  const TextureId image = add(scene, image_texture(add_image(scene, 2, 2, {1, 2, 3, 6}), TextureFilter::nearest));
   const TextureId product = add(scene, ScaleTexture{image, three});
   const TextureSet set(scene, Context{});
   EXPECT_NEAR(set.mean(board).x, 2, 1e-5f);
@@ -139,7 +148,7 @@ TEST(TextureSet, RejectsCyclesDeepGraphsAndBrokenImages) {
   }
   {
     Scene scene;
-    add(scene, ImageTexture{.image = add_image(scene, 4, 4, {1, 2, 3})});
+    add(scene, image_texture(add_image(scene, 4, 4, {1, 2, 3})));
     EXPECT_THROW(TextureSet(scene, Context{}), Error);
   }
 }
@@ -149,9 +158,11 @@ TEST(TextureSet, BatchEqualsSingleSamplesAndImagesAreSharedBetweenTextures) {
   std::vector<float> values(256 * 256);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>((i * 2654435761u) % 97u);
   const ImageId image = add_image(scene, 256, 256, values);
-  const TextureId first = add(scene, ImageTexture{.image = image});
+  const TextureId first = add(scene, image_texture(image));
   const TextureSet one(scene, Context{});
-  add(scene, ImageTexture{.image = image, .wrap_u = Wrap::clamp});
+  ImageTexture clamped = image_texture(image);
+  clamped.wrap_u = Wrap::clamp;
+  add(scene, clamped);
   const TextureSet two(scene, Context{});
   EXPECT_LT(two.memory_bytes(), one.memory_bytes() + 1000);
 
