@@ -25,12 +25,12 @@ namespace sightline {
 
 /// What is known about one setting besides name, type and default.
 struct SettingInfo {
-  std::string help;                  ///< one line
+  std::string help{};                ///< one line
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
-  std::string unit;                  ///< "px", "rad", "s", ... or empty
-  std::string symbol;                ///< the paper's symbol, or empty
-  std::vector<std::string> choices;  ///< allowed values of a text setting; for an enum the names of its values from 0 on
+  std::string unit{};                  ///< "px", "rad", "s", ... or empty
+  std::string symbol{};                ///< the paper's symbol, or empty
+  std::vector<std::string> choices{};  ///< allowed values of a text setting; for an enum the names of its values from 0 on
 };
 
 enum class SettingType { boolean, integer, real, text };

@@ -1,0 +1,167 @@
+#include "film/frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/core/error.h"
+
+namespace sightline {
+
+Frame::Frame(int width, int height, AovSet aovs, std::uint32_t first_sample)
+    : width_(width), height_(height), tiles_x_((width + kTileSize - 1) / kTileSize), aovs_(aovs), first_sample_(first_sample) {
+  const std::size_t pixel_count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (const AovInfo& info : aov_table()) {
+    if (aovs.has(info.id)) sums_[static_cast<std::size_t>(info.id)].resize(pixel_count * info.channels.size());
+  }
+  samples_done_.resize(static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>((height + kTileSize - 1) / kTileSize), 0);
+}
+
+Frame::Frame(Frame&& other) noexcept { *this = std::move(other); }
+
+Frame& Frame::operator=(Frame&& other) noexcept {
+  width_ = other.width_, height_ = other.height_, tiles_x_ = other.tiles_x_;
+  aovs_ = other.aovs_, first_sample_ = other.first_sample_;
+  sums_ = std::move(other.sums_);
+  samples_done_ = std::move(other.samples_done_);
+  nonfinite_ = other.nonfinite_.load(), saturated_ = other.saturated_.load(), bad_sample_ = other.bad_sample_.load();
+  return *this;
+}
+
+Tile Frame::tile(std::size_t index) const {
+  const int tx = static_cast<int>(index) % tiles_x_, ty = static_cast<int>(index) / tiles_x_;
+  Tile tile{static_cast<std::uint32_t>(index), tx * kTileSize, ty * kTileSize, (tx + 1) * kTileSize, (ty + 1) * kTileSize};
+  tile.x1 = std::min(tile.x1, width_), tile.y1 = std::min(tile.y1, height_);
+  return tile;
+}
+
+std::uint32_t Frame::tile_of_pixel(std::uint32_t pixel) const {
+  const int x = static_cast<int>(pixel) % width_, y = static_cast<int>(pixel) / width_;
+  return static_cast<std::uint32_t>(y / kTileSize * tiles_x_ + x / kTileSize);
+}
+
+std::uint32_t Frame::samples_done() const {
+  return samples_done_.empty() ? 0 : *std::min_element(samples_done_.begin(), samples_done_.end());
+}
+
+void Frame::add_color(std::uint32_t pixel, std::uint32_t sample, const Color& radiance) {
+  if (!is_finite(radiance)) {
+    nonfinite_.fetch_add(1, std::memory_order_relaxed);
+    // Keep the smallest (pixel, sample), so that the report does not depend on threads.
+    const std::uint64_t code = (std::uint64_t{pixel} << 32) | sample;
+    std::uint64_t seen = bad_sample_.load(std::memory_order_relaxed);
+    while (code < seen && !bad_sample_.compare_exchange_weak(seen, code)) {
+    }
+    return;
+  }
+  ExactSum* sum = &sums_[0][std::size_t{3} * pixel];
+  bool in_range = sum[0].add(radiance.x);
+  in_range &= sum[1].add(radiance.y);
+  in_range &= sum[2].add(radiance.z);
+  if (!in_range) saturated_.fetch_add(1, std::memory_order_relaxed);
+  if (aovs_.has(Aov::variance)) {
+    const float y = luminance(radiance);
+    sums_[static_cast<std::size_t>(Aov::variance)][pixel].add(y * y);
+  }
+}
+
+void Frame::add(Aov aov, std::uint32_t pixel, const Vec3& value) {
+  std::vector<ExactSum>& sums = sums_[static_cast<std::size_t>(aov)];
+  if (sums.empty() || !is_finite(value)) return;
+  const std::size_t channels = aov_info(aov).channels.size();
+  for (std::size_t c = 0; c < channels; ++c) sums[pixel * channels + c].add(value[static_cast<int>(c)]);
+}
+
+Vec3 Frame::value(Aov aov, std::uint32_t pixel) const {
+  const std::vector<ExactSum>& sums = sums_[static_cast<std::size_t>(aov)];
+  const std::uint32_t samples = samples_done_[tile_of_pixel(pixel)];
+  Vec3 result(0);
+  if (sums.empty() || samples == 0) return result;
+  const std::size_t channels = aov_info(aov).channels.size();
+  for (std::size_t c = 0; c < channels; ++c)
+    result[static_cast<int>(c)] = static_cast<float>(sums[pixel * channels + c].to_double() / samples);
+  return result;
+}
+
+Color Frame::color(std::uint32_t pixel) const { return value(Aov::color, pixel); }
+
+ColorImage Frame::color_image() const {
+  ColorImage image(width_, height_);
+  for (std::uint32_t pixel = 0; pixel < image.pixels.size(); ++pixel) image.pixels[pixel] = color(pixel);
+  return image;
+}
+
+LayeredImage Frame::to_layered_image() const {
+  LayeredImage image;
+  image.width = width_, image.height = height_;
+  const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  for (const AovInfo& info : aov_table()) {
+    if (!aovs_.has(info.id)) continue;
+    const std::size_t first = image.channels.size();
+    for (const std::string_view channel : info.channels) {
+      std::string name = info.id == Aov::color ? std::string(channel) : std::string(info.name) + "." + std::string(channel);
+      image.channels.push_back({std::move(name), info.half, std::vector<float>(pixel_count)});
+    }
+    for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) {
+      const Vec3 v = value(info.id, pixel);
+      for (std::size_t c = 0; c < info.channels.size(); ++c) image.channels[first + c].values[pixel] = v[static_cast<int>(c)];
+    }
+  }
+  Channel samples{"samples.N", false, std::vector<float>(pixel_count)};
+  for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel)
+    samples.values[pixel] = static_cast<float>(samples_done_[tile_of_pixel(pixel)]);
+  image.channels.push_back(std::move(samples));
+  return image;
+}
+
+double Frame::mean_luminance() const {
+  double sum = 0;
+  const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) sum += luminance(color(pixel));
+  return pixel_count ? sum / static_cast<double>(pixel_count) : 0;
+}
+
+std::optional<double> Frame::estimated_error() const {
+  if (!aovs_.has(Aov::variance)) return std::nullopt;
+  const double floor_luminance = std::max(1e-12, 0.01 * mean_luminance());
+  double sum = 0;
+  std::size_t counted = 0;
+  const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) {
+    const double n = samples_done_[tile_of_pixel(pixel)];
+    if (n < 2) return std::nullopt;
+    const double mean = luminance(color(pixel));
+    const double variance = std::max(0.0, sums_[static_cast<std::size_t>(Aov::variance)][pixel].to_double() / n - mean * mean) / (n - 1);
+    const double scale = std::max(mean, floor_luminance);
+    sum += variance / (scale * scale);
+    ++counted;
+  }
+  return counted ? std::optional(std::sqrt(sum / static_cast<double>(counted))) : std::nullopt;
+}
+
+std::optional<BadSample> Frame::first_bad_sample() const {
+  const std::uint64_t code = bad_sample_.load();
+  if (code == ~std::uint64_t{0}) return std::nullopt;
+  return BadSample{static_cast<std::uint32_t>(code >> 32), static_cast<std::uint32_t>(code)};
+}
+
+std::uint64_t Frame::memory_bytes() const {
+  std::uint64_t bytes = samples_done_.size() * sizeof(std::uint32_t);
+  for (const auto& sums : sums_) bytes += sums.size() * sizeof(ExactSum);
+  return bytes;
+}
+
+void Frame::merge(const Frame& other) {
+  if (other.width_ != width_ || other.height_ != height_ || other.aovs_.bits() != aovs_.bits())
+    throw input_error("frames differ in size or layers and cannot be merged");
+  for (std::size_t layer = 0; layer < kAovCount; ++layer) {
+    for (std::size_t i = 0; i < sums_[layer].size(); ++i) sums_[layer][i].value += other.sums_[layer][i].value;
+  }
+  for (std::size_t tile = 0; tile < samples_done_.size(); ++tile) samples_done_[tile] += other.samples_done_[tile];
+  first_sample_ = std::min(first_sample_, other.first_sample_);
+  nonfinite_ += other.nonfinite_.load();
+  saturated_ += other.saturated_.load();
+  bad_sample_ = std::min(bad_sample_.load(), other.bad_sample_.load());
+}
+
+}  // namespace sightline

@@ -1,0 +1,338 @@
+#include "methods/reference/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/sample/sobol.h"
+#include "shade/material_eval.h"
+
+namespace sightline {
+namespace {
+
+using dimension::pair_of;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Power heuristic with exponent 2 [Veach1997, §9.2.4]; n light samples against one BSDF sample.
+float power_heuristic(float n_pdf, float other) {
+  const float a = n_pdf * n_pdf, b = other * other;
+  return a + b > 0 ? a / (a + b) : 0.f;
+}
+
+Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
+void store(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
+
+// Pixels of a tile in 4x4 blocks, so that 16 neighbouring lanes are a square.
+std::vector<std::uint32_t> block_order(const Tile& tile, int width) {
+  std::vector<std::uint32_t> order;
+  order.reserve(static_cast<std::size_t>(tile.pixel_count()));
+  for (int by = tile.y0; by < tile.y1; by += 4) {
+    for (int bx = tile.x0; bx < tile.x1; bx += 4) {
+      for (int y = by; y < std::min(by + 4, tile.y1); ++y) {
+        for (int x = bx; x < std::min(bx + 4, tile.x1); ++x) order.push_back(static_cast<std::uint32_t>(y * width + x));
+      }
+    }
+  }
+  return order;
+}
+
+}  // namespace
+
+PathKernel::PathKernel(const World& world, const View& view, const KernelOptions& options) : world_(world), view_(view), options_(options) {
+  // Rays find the lights that are geometry or surround the scene. Without any, a BSDF ray of the last bounce cannot add light.
+  bool emissive = world.lights().has_environment();
+  for (const Material& material : world.scene().materials) emissive |= !is_black(material.emission.value);
+  bsdf_sampling_finds_lights_ = emissive;
+
+  pixel_.resize(kBatch), sample_.resize(kBatch), key_.resize(kBatch);
+  direct_.resize(kBatch), indirect_.resize(kBatch);
+  slot_.resize(kBatch), throughput_.resize(kBatch), bsdf_pdf_.resize(kBatch), previous_.resize(kBatch), previous_normal_.resize(kBatch);
+  medium_.resize(kBatch), cone_width_.resize(kBatch), cone_spread_.resize(kBatch);
+  bsdf_.resize(kBatch), frame_.resize(kBatch), shaded_.resize(kBatch);
+  scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), source_.resize(kBatch);
+  u0_.resize(kBatch), u1_.resize(kBatch), u2_.resize(kBatch), u3_.resize(kBatch);
+  light_position_.resize(kBatch), light_normal_.resize(kBatch);
+  contribution_.resize(kBatch), shadow_source_.resize(kBatch), occluded_.resize(kBatch);
+}
+
+void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
+  counts_ = {};
+  const std::vector<std::uint32_t> order = block_order(tile, view_.width());
+  // A batch holds all samples of some pixels, or a part of the samples of one; sums are exact, so the split does not show.
+  const std::uint32_t samples_a_batch = std::min<std::uint32_t>(samples.count(), kBatch);
+  const std::size_t pixels_a_batch = kBatch / samples_a_batch;
+  for (std::size_t first = 0; first < order.size(); first += pixels_a_batch) {
+    const std::span pixels = std::span(order).subspan(first, std::min(pixels_a_batch, order.size() - first));
+    for (std::uint32_t begin = samples.begin; begin < samples.end; begin += samples_a_batch) {
+      start_paths(tile, pixels, {begin, std::min(begin + samples_a_batch, samples.end)});
+      const std::uint32_t last = static_cast<std::uint32_t>(options_.max_bounces) + 1;
+      for (std::uint32_t bounce = 0; bounce <= last && alive_ > 0; ++bounce) {
+        trace(bounce);
+        add_emission(bounce);
+        if (bounce == 0) evaluate_materials(bounce), write_aovs(frame);
+        if (bounce == last) break;
+        if (bounce > 0) evaluate_materials(bounce);
+        sample_lights(bounce);
+        if (options_.one_hit || (bounce + 1 == last && !bsdf_sampling_finds_lights_)) break;
+        scatter(bounce);
+      }
+      for (std::size_t path = 0; path < path_count_; ++path) {
+        frame.add_color(pixel_[path], sample_[path], direct_[path] + indirect_[path]);
+        frame.add(Aov::direct, pixel_[path], direct_[path]);
+        frame.add(Aov::indirect, pixel_[path], indirect_[path]);
+      }
+    }
+  }
+  statistics.rays += counts_;
+  statistics.visibility.queries += counts_.occlusion;
+  statistics.visibility.traced += counts_.occlusion;
+}
+
+void PathKernel::start_paths(const Tile&, std::span<const std::uint32_t> pixels, SampleRange samples) {
+  path_count_ = 0;
+  for (const std::uint32_t pixel : pixels) {
+    const std::uint32_t key = pixel_key(options_.seed, pixel);
+    for (std::uint32_t sample = samples.begin; sample < samples.end; ++sample) {
+      pixel_[path_count_] = pixel, sample_[path_count_] = sample, key_[path_count_] = key;
+      ++path_count_;
+    }
+  }
+  alive_ = path_count_;
+  rays_.resize(alive_);
+  sobol_2d(key_.data(), sample_.data(), dimension::kPixel, alive_, u0_.data(), u1_.data());
+  if (view_.has_lens()) sobol_2d(key_.data(), sample_.data(), dimension::kLens, alive_, u2_.data(), u3_.data());
+  view_.primary_rays(pixel_.data(), u0_.data(), u1_.data(), u2_.data(), u3_.data(), alive_,
+                     {rays_.origin.x.data(), rays_.origin.y.data(), rays_.origin.z.data(), rays_.direction.x.data(),
+                      rays_.direction.y.data(), rays_.direction.z.data()});
+  for (std::size_t i = 0; i < alive_; ++i) {
+    rays_.t_near[i] = 0, rays_.t_far[i] = kInfinity;
+    slot_[i] = static_cast<std::uint32_t>(i);
+    throughput_[i] = Color(1);
+    direct_[i] = indirect_[i] = Color(0);
+    bsdf_pdf_[i] = -1;
+    medium_[i] = {};
+    cone_width_[i] = view_.cone_width(), cone_spread_[i] = view_.cone_spread();
+  }
+}
+
+void PathKernel::trace(std::uint32_t bounce) {
+  world_.tracer().intersect(rays_, hits_, bounce == 0 ? BatchKind::primary : BatchKind::bounce, counts_);
+  world_.surfaces(rays_, hits_, surfaces_);
+}
+
+void PathKernel::add_radiance(std::uint32_t slot, bool direct, const Color& value) { (direct ? direct_ : indirect_)[slot] += value; }
+
+void PathKernel::add_emission(std::uint32_t bounce) {
+  const LightTable& lights = world_.lights();
+  for (std::size_t i = 0; i < alive_; ++i) {
+    const Vec3 direction = load(rays_.direction, i);
+    if (hits_.hit(i) && medium_[i].valid()) throughput_[i] *= glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]);
+    if (!hits_.hit(i)) {
+      if (!lights.has_environment()) continue;
+      float weight = 1;
+      if (bsdf_pdf_[i] >= 0)
+        weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) *
+                                                   lights.environment_pdf(previous_[i], previous_normal_[i], direction));
+      add_radiance(slot_[i], bounce <= 1, throughput_[i] * lights.environment(direction) * weight);
+      continue;
+    }
+    if (surfaces_.light[i] == kNoLight) continue;
+    const Vec3 normal = load(surfaces_.geometric_normal, i);
+    const bool front = glm::dot(normal, direction) < 0;
+    TexturePoint texture;
+    if (!surfaces_.plain[i]) texture = world_.detail(rays_, hits_, i, cone_width_[i] + cone_spread_[i] * hits_.t[i]).texture;
+    const Color emission = lights.emission(surfaces_.light[i], texture, front);
+    if (is_black(emission)) continue;
+    float weight = 1;
+    if (bsdf_pdf_[i] >= 0) {
+      const float light_pdf =
+          lights.pdf(previous_[i], previous_normal_[i], surfaces_.light[i], load(surfaces_.position, i), normal, direction);
+      weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) * light_pdf);
+    }
+    add_radiance(slot_[i], bounce <= 1, throughput_[i] * emission * weight);
+  }
+}
+
+void PathKernel::evaluate_materials(std::uint32_t bounce) {
+  const Scene& scene = world_.scene();
+  bool mix = false;
+  for (const Material& material : scene.materials) mix |= std::holds_alternative<MixMaterial>(material.model);
+  if (mix) {
+    for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), alive_, u0_.data(), u1_.data());
+  }
+  for (std::size_t i = 0; i < alive_; ++i) {
+    shaded_[i] = hits_.hit(i);
+    if (!shaded_[i]) continue;
+    const Vec3 wo = -load(rays_.direction, i);
+    const Vec3 geometric = load(surfaces_.geometric_normal, i);
+    Vec3 normal = load(surfaces_.shading_normal, i);
+    if (surfaces_.plain[i]) {
+      if (glm::dot(wo, normal) * glm::dot(wo, geometric) <= 0) normal = geometric;
+      frame_[i] = frame_from_normal(normal);
+      bsdf_[i] = Bsdf(Lambert{load(surfaces_.albedo, i)});
+      continue;
+    }
+    const MaterialId id = surfaces_.material[i] == kDefaultMaterial ? MaterialId{} : MaterialId{surfaces_.material[i]};
+    const SurfaceDetail detail = world_.detail(rays_, hits_, i, cone_width_[i] + cone_spread_[i] * hits_.t[i]);
+    float u_mix = mix ? u1_[i] : 0.f;
+    const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
+    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric);
+    // A shading normal that faces away from the viewer would make the surface black or transparent: fall back to the geometric one.
+    if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
+    bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
+    surfaces_.material[i] = resolved.valid() ? resolved.index : kDefaultMaterial;
+  }
+}
+
+void PathKernel::write_aovs(Frame& frame) {
+  if (frame.aovs().bits() == AovSet().bits()) return;
+  for (std::size_t i = 0; i < alive_; ++i) {
+    if (!hits_.hit(i)) continue;
+    const std::uint32_t pixel = pixel_[slot_[i]];
+    const Vec3 position = load(surfaces_.position, i);
+    const bool emitter = surfaces_.light[i] != kNoLight;
+    frame.add(Aov::albedo, pixel, bsdf_[i].albedo());
+    frame.add(Aov::normal, pixel, frame_[i].normal);
+    frame.add(Aov::position, pixel, position);
+    frame.add(Aov::depth, pixel, Vec3(glm::length(position - load(rays_.origin, i))));
+    frame.add(Aov::surface, pixel, emitter ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+  }
+}
+
+void PathKernel::sample_lights(std::uint32_t bounce) {
+  if (world_.lights().size() == 0) return;
+  // Lanes are (shading point, light sample) pairs, the samples of a point side by side; they are worked off in chunks.
+  std::size_t lanes = 0;
+  const std::size_t samples = static_cast<std::size_t>(options_.light_samples);
+  const auto flush = [&] {
+    if (lanes > 0) light_chunk(bounce, 0, lanes);
+    lanes = 0;
+  };
+  for (std::size_t i = 0; i < alive_; ++i) {
+    if (!shaded_[i] || bsdf_[i].is_delta()) continue;
+    const std::uint32_t slot = slot_[i];
+    for (std::size_t k = 0; k < samples; ++k) {
+      scratch_key_[lanes] = key_[slot];
+      scratch_index_[lanes] = sample_[slot] * static_cast<std::uint32_t>(samples) + static_cast<std::uint32_t>(k);
+      source_[lanes] = static_cast<std::uint32_t>(i);
+      if (++lanes == kBatch) flush();
+    }
+  }
+  flush();
+}
+
+void PathKernel::light_chunk(std::uint32_t bounce, std::size_t, std::size_t count) {
+  const LightTable& lights = world_.lights();
+  const float samples = static_cast<float>(options_.light_samples);
+  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPoint), count, u0_.data(), u1_.data());
+  if (lights.size() > 1)
+    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), count, u2_.data(), u3_.data());
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const std::size_t i = source_[lane];
+    store(light_position_, lane, load(surfaces_.position, i));
+    store(light_normal_, lane, load(surfaces_.geometric_normal, i));
+  }
+  lights.sample(light_position_, light_normal_, u2_, u0_, u1_, count, light_);
+
+  // Contributions if nothing is in between; only the non-zero ones ask for a ray.
+  shadow_.resize(count);
+  std::size_t rays = 0;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    if (!(light_.pdf[lane] > 0)) continue;
+    const std::size_t i = source_[lane];
+    const Vec3 wi = load(light_.wi, lane);
+    const Vec3 wo = -load(rays_.direction, i);
+    const Vec3 geometric = load(surfaces_.geometric_normal, i);
+    const Vec3 wo_local = frame_[i].to_local(wo), wi_local = frame_[i].to_local(wi);
+    // Reflection by the shading normal must be reflection by the geometric one, else light leaks through.
+    if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) continue;
+    const BsdfEval eval = bsdf_[i].evaluate(wo_local, wi_local);
+    Color value = eval.f_cos * load(light_.radiance, lane) * (1 / (light_.pdf[lane] * samples));
+    if (is_black(value)) continue;
+    // Rays find emissive geometry and the environment too; lights that only sampling sees keep weight 1.
+    const bool other_technique = !options_.one_hit && !light_.is_delta[lane] && (light_.is_mesh[lane] || std::isinf(light_.distance[lane]));
+    if (other_technique) value *= power_heuristic(samples * light_.pdf[lane], eval.pdf);
+    const Vec3 position = load(surfaces_.position, i);
+    const Vec3 origin = offset_origin(position, geometric, surfaces_.error[i], wi);
+    if (std::isinf(light_.distance[lane])) {
+      shadow_.set(rays, {origin, 0, wi, kInfinity});
+    } else {
+      const Vec3 target = offset_origin(load(light_.point, lane), load(light_.normal, lane), light_.point_error[lane], -wi);
+      shadow_.set(rays, {origin, 0, target - origin, 1});
+    }
+    contribution_[rays] = throughput_[i] * value;
+    shadow_source_[rays] = static_cast<std::uint32_t>(i);
+    ++rays;
+  }
+  if (rays == 0) return;
+  shadow_.size = rays;
+  const bool coherent = bounce == 0;
+  world_.tracer().occluded(shadow_, std::span(occluded_), coherent ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
+  for (std::size_t r = 0; r < rays; ++r) {
+    if (!occluded_[r]) add_radiance(slot_[shadow_source_[r]], bounce == 0, contribution_[r]);
+  }
+}
+
+void PathKernel::scatter(std::uint32_t bounce) {
+  for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
+  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());
+
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < alive_; ++i) {
+    if (!shaded_[i]) continue;
+    const Vec3 direction = load(rays_.direction, i);
+    const Vec3 geometric = load(surfaces_.geometric_normal, i);
+    const Vec3 position = load(surfaces_.position, i);
+    const std::uint32_t material_index = surfaces_.material[i];
+    const Material* material = material_index < world_.scene().materials.size() ? &world_.scene().materials[material_index] : nullptr;
+
+    Vec3 wi;
+    Color throughput = throughput_[i];
+    float pdf = -1;
+    bool crosses = false;
+    if (material && std::holds_alternative<InterfaceMaterial>(material->model)) {
+      wi = direction, pdf = bsdf_pdf_[i], crosses = true;
+    } else {
+      const Vec3 wo_local = frame_[i].to_local(-direction);
+      const std::optional<BsdfSample> sample = bsdf_[i].sample(wo_local, u0_[i], {u2_[i], u3_[i]});
+      if (!sample) continue;
+      wi = frame_[i].to_world(sample->wi);
+      crosses = glm::dot(wi, geometric) * glm::dot(-direction, geometric) < 0;
+      if (crosses != sample->is_transmission) continue;
+      throughput *= sample->weight;
+      pdf = sample->is_delta ? -1.f : sample->pdf;
+    }
+    if (is_black(throughput)) continue;
+
+    // Russian roulette on the throughput that remains.
+    if (static_cast<int>(bounce) >= options_.roulette_start) {
+      const float survival = std::min(0.95f, max_component(throughput));
+      if (u1_[i] >= survival) continue;
+      throughput /= survival;
+    }
+
+    // Everything of path i moves to place `kept` <= i; nothing of i is read after this.
+    const float width = cone_width_[i] + cone_spread_[i] * hits_.t[i];
+    MediumId medium = medium_[i];
+    if (crosses && material) medium = glm::dot(wi, geometric) < 0 ? material->interior : MediumId{};
+    slot_[kept] = slot_[i];
+    throughput_[kept] = throughput;
+    bsdf_pdf_[kept] = pdf;
+    const bool passes = material && std::holds_alternative<InterfaceMaterial>(material->model);
+    previous_[kept] = passes ? previous_[i] : position;
+    previous_normal_[kept] = passes ? previous_normal_[i] : geometric;
+    medium_[kept] = medium;
+    cone_width_[kept] = width;
+    // A rough bounce blurs what lies behind it: a wider cone, coarser texture levels.
+    cone_spread_[kept] = pdf < 0 ? cone_spread_[i] : std::max(cone_spread_[i], 0.25f);
+    rays_.set(kept, {offset_origin(position, geometric, surfaces_.error[i], wi), 0, wi, kInfinity});
+    ++kept;
+  }
+  alive_ = kept;
+  rays_.size = kept;
+}
+
+}  // namespace sightline

@@ -1,0 +1,85 @@
+// Path tracing of one tile in waves: every stage runs over a batch of paths before the next begins.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/core/aligned.h"
+#include "film/frame.h"
+#include "film/view.h"
+#include "methods/method.h"
+#include "shade/bsdf.h"
+#include "world/world.h"
+
+namespace sightline {
+
+struct KernelOptions {
+  int light_samples = 1;
+  int max_bounces = 8;
+  int roulette_start = 4;
+  bool one_hit = false;  ///< light sampling only, no MIS
+  std::uint64_t seed = 0;
+};
+
+/// State of one thread's batch of paths. A path is a slot (0 … path count); per-bounce arrays are compacted to the living ones, `slot`
+/// telling whose they are.
+class PathKernel {
+ public:
+  PathKernel(const World& world, const View& view, const KernelOptions& options);
+
+  /// Adds samples of every pixel of the tile to the frame. No threads, no files.
+  void render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics);
+
+ private:
+  static constexpr std::size_t kBatch = 2048;
+
+  void start_paths(const Tile& tile, std::span<const std::uint32_t> pixels, SampleRange samples);
+  void trace(std::uint32_t bounce);
+  void add_emission(std::uint32_t bounce);
+  void evaluate_materials(std::uint32_t bounce);
+  void sample_lights(std::uint32_t bounce);
+  void light_chunk(std::uint32_t bounce, std::size_t first, std::size_t count);
+  void scatter(std::uint32_t bounce);
+  void write_aovs(Frame& frame);
+  void add_radiance(std::uint32_t slot, bool direct, const Color& value);
+
+  const World& world_;
+  const View& view_;
+  KernelOptions options_;
+  bool bsdf_sampling_finds_lights_;
+
+  // One element a path, for its whole life.
+  std::size_t path_count_ = 0;
+  AlignedVector<std::uint32_t> pixel_, sample_, key_;
+  std::vector<Color> direct_, indirect_;
+
+  // One element a living path, compacted after each bounce.
+  std::size_t alive_ = 0;
+  AlignedVector<std::uint32_t> slot_;
+  std::vector<Color> throughput_;
+  std::vector<float> bsdf_pdf_;                   ///< of the ray being traced; < 0 after the camera or a delta bounce
+  std::vector<Vec3> previous_, previous_normal_;  ///< where the ray left
+  std::vector<MediumId> medium_;
+  std::vector<float> cone_width_, cone_spread_;
+  RayBatch rays_;
+  HitBatch hits_;
+  SurfaceBatch surfaces_;
+
+  // One element a shading point of this bounce (index = compacted index).
+  std::vector<Bsdf> bsdf_;
+  std::vector<Frame3> frame_;
+  std::vector<std::uint8_t> shaded_;  ///< 1: a surface with a BSDF
+
+  // Scratch of the stages.
+  AlignedVector<std::uint32_t> scratch_key_, scratch_index_, source_;
+  AlignedVector<float> u0_, u1_, u2_, u3_;
+  Vec3Batch light_position_, light_normal_;
+  LightSampleBatch light_;
+  RayBatch shadow_;
+  std::vector<Color> contribution_;
+  std::vector<std::uint32_t> shadow_source_;
+  AlignedVector<std::uint8_t> occluded_;
+  RayCounts counts_;
+};
+
+}  // namespace sightline

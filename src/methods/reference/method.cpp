@@ -1,0 +1,58 @@
+#include "methods/reference/method.h"
+
+#include <optional>
+
+#include "base/sample/sobol.h"
+#include "methods/reference/kernel.h"
+#include "methods/reference/settings.h"
+#include "methods/tile_loop.h"
+
+namespace sightline {
+namespace {
+
+KernelOptions kernel_options(const RenderJob& job, const Context& context) {
+  const auto& settings = job.settings.as<ReferenceSettings>();
+  KernelOptions options;
+  options.light_samples = job.light_samples > 0 ? job.light_samples : settings.light_samples;
+  options.max_bounces = job.max_bounces;
+  options.roulette_start = settings.roulette_start;
+  options.seed = context.seed;
+  using Mode = ReferenceSettings::Mode;
+  const bool comparison = job.total_spp == 1 && job.light_samples > 0 && job.max_bounces == 0;
+  options.one_hit = settings.mode == Mode::one_hit || (settings.mode == Mode::automatic && comparison);
+  if (options.one_hit) options.max_bounces = 0;
+  return options;
+}
+
+}  // namespace
+
+const MethodInfo& ReferenceMethod::info() const {
+  static const MethodInfo info = [] {
+    MethodInfo i;
+    i.name = "reference";
+    i.help = "path tracing with multiple importance sampling: the truth that other methods are compared with";
+    i.citation = "Kajiya1986, Veach1997";
+    i.unbiased = i.consistent = i.progressive = i.deterministic = true;
+    for (int k = 0; k <= static_cast<int>(LightKind::environment); ++k) i.lights.push_back(static_cast<LightKind>(k));
+    for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) i.materials.push_back(static_cast<MaterialKind>(k));
+    return i;
+  }();
+  return info;
+}
+
+SettingsValue ReferenceMethod::default_settings() const { return SettingsValue::of<ReferenceSettings>(); }
+
+void ReferenceMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
+                                  const Context& context) const {
+  const KernelOptions options = kernel_options(job, context);
+  std::optional<View> centred;
+  if (options.one_hit)
+    centred.emplace(job.view->camera(), IVec2(job.view->width(), job.view->height()), PixelFilter(PixelFilter::Kind::centre));
+  const View& view = centred ? *centred : *job.view;
+  for_each_tile(context, frame, range, statistics, [&](const Tile& tile, SampleRange samples, PassStatistics& local) {
+    PathKernel kernel(*job.world, view, options);
+    kernel.render_tile(tile, samples, frame, local);
+  });
+}
+
+}  // namespace sightline

@@ -1,0 +1,30 @@
+#include <string>
+
+#include "base/core/error.h"
+#include "visibility/exact/exact.h"
+#include "visibility/visibility.h"
+
+namespace sightline {
+
+const std::vector<VisibilityInfo>& visibilities() {
+  static const std::vector<VisibilityInfo> table = {
+      exact_visibility(),
+  };
+  return table;
+}
+
+const VisibilityInfo& find_visibility(std::string_view name) {
+  std::vector<std::string> known;
+  for (const VisibilityInfo& info : visibilities()) {
+    if (info.name == name) return info;
+    known.push_back(info.name);
+  }
+  Error error = usage_error("unknown visibility '" + std::string(name) + "'");
+  const std::string nearest = nearest_name(name, known);
+  std::string list;
+  for (const std::string& entry : known) list += (list.empty() ? "" : ", ") + entry;
+  error.remedy(nearest.empty() ? "known: " + list : "did you mean '" + nearest + "'?");
+  throw error;
+}
+
+}  // namespace sightline
