@@ -21,6 +21,7 @@ add_library(sightline_options INTERFACE)
 # same picture"). x86-64-v2 is the floor (every x86 CPU since 2009); wider vectors are chosen at run time by Highway.
 target_compile_options(sightline_options INTERFACE
   -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wno-missing-field-initializers  # designated initialisers leave members out on purpose
   $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(sightline_options INTERFACE -march=x86-64-v2)

@@ -9,7 +9,7 @@ set -euo pipefail
 build_packages=(
   g++ cmake ninja-build ccache pkg-config python3
   libembree-dev libtbb-dev libhwy-dev                                        # rays, tasks, vectors
-  libopenexr-dev libpng-dev libjpeg62-turbo-dev libstb-dev                   # pictures
+  libopenexr-dev libpng-dev libjpeg62-turbo-dev libstb-dev zlib1g-dev        # pictures
   libglm-dev libeigen3-dev                                                   # mathematics
   libtinygltf-dev libtinyobjloader-dev libfast-float-dev                     # scene files
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                   # text in and out

@@ -1,9 +1,7 @@
-#!/ usr / bin / env python3
-""
-    "Opens a page in headless Chromium and fails if a script fails or the page's own check of itself does not say " ok ".
+#!/usr/bin/env python3
+"""Opens a page in headless Chromium and fails if a script fails or the page's own check of itself does not say "ok".
 
-    The page comes from-- page FILE,
-    or from a program : --maker PROGRAM is run as `PROGRAM KIND FILE`.Needs no network; the browser's profile
+The page comes from --page FILE, or from a program: --maker PROGRAM is run as `PROGRAM KIND FILE`. Needs no network; the browser's profile
 lies in a temporary folder. --screenshot FILE keeps a picture of the page.
 """
 import argparse
@@ -16,7 +14,7 @@ import sys
 import tempfile
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-#Where Chromium itself complains about its surroundings(no D - Bus, no GPU), the page is not at fault; scripts report through CONSOLE.
+# Where Chromium itself complains about its surroundings (no D-Bus, no GPU), the page is not at fault; scripts report through CONSOLE.
 SCRIPT_PROBLEM = re.compile(r"CONSOLE.*|Uncaught .*|Refused to .*")
 
 
@@ -41,7 +39,7 @@ def page_problems(browser, page, screenshot, folder):
     problems = [match.group(0) for match in map(SCRIPT_PROBLEM.search, log.splitlines()) if match]
     if "</html>" not in dom:
         return problems + ["the browser gave no page; its last words: " + " | ".join(log.splitlines()[-3:])]
-#Only pages with scripts check themselves.
+    # Only pages with scripts check themselves.
     if "<script" in dom:
         verdict = re.search(r'<html[^>]*data-self-check="([^"]*)"', dom)
         if not verdict:
