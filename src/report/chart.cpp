@@ -33,11 +33,16 @@ struct Axis {
 std::vector<double> ticks_of(const Axis& axis, int count) {
   if (!axis.logarithmic) return axis_ticks(axis.low, axis.high, count);
   std::vector<double> ticks;
-  // Whole decades, thinned out where there are many.
-  const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9)),
-            last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
+  // Whole decades, thinned out where there are many; 2 and 5 times them where there are few.
+  const int first = static_cast<int>(std::floor(std::log10(axis.low))), last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
   const int step = std::max(1, (last - first) / std::max(1, count));
-  for (int exponent = first; exponent <= last; exponent += step) ticks.push_back(std::pow(10.0, exponent));
+  for (int exponent = first; exponent <= last; exponent += step) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = factor * std::pow(10.0, exponent);
+      const bool inside = tick >= axis.low * (1 - 1e-9) && tick <= axis.high * (1 + 1e-9);
+      if (inside && (factor == 1 || last - first <= 3)) ticks.push_back(tick);
+    }
+  }
   if (ticks.size() < 2) return axis_ticks(axis.low, axis.high, count);
   return ticks;
 }

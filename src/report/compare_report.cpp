@@ -55,8 +55,8 @@ constexpr std::string_view kBody = R"~html~(<body class="compare">
 <section class="stage">
   <div class="toolbar">
     <div class="segments" id="modes" role="group" aria-label="View"></div>
-    <label>Exposure <input id="exposure" type="range" min="-10" max="10" step="0.1" value="0"><output id="exposure-value">0.0</output></label>
-    <label>Tone map <select id="tonemap"></select></label>
+    <label class="tone-only">Exposure <input id="exposure" type="range" min="-10" max="10" step="0.1" value="0"><output id="exposure-value">0.0</output></label>
+    <label class="tone-only">Tone map <select id="tonemap"></select></label>
     <label class="error-only">Error <select id="error-kind"></select></label>
     <label class="error-only">Range <input id="error-range" type="range" min="-12" max="6" step="0.25" value="0"><output id="error-range-value"></output></label>
     <span class="spring"></span>

@@ -30,9 +30,9 @@ def run(command):
     return done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
 
 
-def page_problems(browser, page, screenshot, folder):
+def page_problems(browser, page, fragment, screenshot, folder):
     command = browser_command(browser, folder / "profile")
-    url = page.resolve().as_uri()
+    url = page.resolve().as_uri() + (f"#{fragment}" if fragment else "")
     dom, log = run(command + ["--dump-dom", url])
     if screenshot:
         run(command + [f"--screenshot={screenshot}", url])
@@ -56,6 +56,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path)
     parser.add_argument("--maker")
     parser.add_argument("--kind", default="")
+    parser.add_argument("--fragment", default="")
     parser.add_argument("--screenshot", type=pathlib.Path)
     parser.add_argument("--expect-failure", action="store_true")
     options = parser.parse_args()
@@ -73,7 +74,7 @@ def main():
         if options.maker:
             page = folder / "page.html"
             subprocess.run([options.maker, options.kind, str(page)], check=True)
-        problems = page_problems(browser, page, options.screenshot, folder)
+        problems = page_problems(browser, page, options.fragment, options.screenshot, folder)
     for problem in problems:
         print(problem, file=sys.stdout if options.expect_failure else sys.stderr)
     if options.expect_failure:

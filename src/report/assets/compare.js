@@ -109,6 +109,16 @@ function setExposure(value) {
   refresh();
 }
 
+// A link can say what to show first: #mode=error&right=2&exposure=1.5&tone=aces&kind=signed
+function readFragment() {
+  const wanted = new URLSearchParams(location.hash.slice(1)), index = name => Number(wanted.get(name));
+  if (wanted.get('mode') in MODES) state.mode = wanted.get('mode');
+  if (wanted.get('tone') in TONE_MAPS) state.tone = find('tonemap').value = wanted.get('tone');
+  if (wanted.get('kind') in ERROR_KINDS) state.kind = find('error-kind').value = wanted.get('kind');
+  for (const side of ['left', 'right']) if (wanted.has(side) && index(side) in pictures) state[side] = index(side);
+  if (Number.isFinite(index('exposure'))) setExposure(index('exposure'));
+}
+
 function buildControls() {
   for (const [mode, label] of Object.entries(MODES)) {
     const button = element('button', { 'data-mode': mode, title: `${label} (${mode[0].toUpperCase()})` }, label);
@@ -201,6 +211,7 @@ async function start() {
   find('footer').append(data.command ? `${data.command} · ` : '', key('0'), '–', key('9'), ' picture (with ', key('Shift'), ' the left one)  ', key('←'), ' ', key('→'),
     ' next  ', key('W'), ' ', key('S'), ' ', key('I'), ' ', key('E'), ' view  ', key('+'), ' ', key('−'), ' exposure  ', key('F'), ' fit; wheel zooms, dragging moves');
   viewport.fit();
+  readFragment();
   refresh();
   checkSelf();
 }
