@@ -13,7 +13,7 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-void drop_bad_triangles(std::vector<Vec3>& positions, std::vector<UVec3>& triangles, std::vector<std::uint16_t>* triangle_materials,
+void drop_bad_triangles(std::span<const Vec3> positions, std::vector<UVec3>& triangles, std::vector<std::uint16_t>* triangle_materials,
                         std::uint64_t& dropped) {
   const std::size_t vertex_count = positions.size();
   const auto is_good = [&](const UVec3& t) {
@@ -35,7 +35,11 @@ void drop_bad_triangles(std::vector<Vec3>& positions, std::vector<UVec3>& triang
   dropped += triangles.size() - kept;
   triangles.resize(kept);
   if (triangle_materials != nullptr && !triangle_materials->empty()) triangle_materials->resize(kept);
+}
 
+void drop_bad_triangles(std::vector<Vec3>& positions, std::vector<UVec3>& triangles, std::vector<std::uint16_t>* triangle_materials,
+                        std::uint64_t& dropped) {
+  drop_bad_triangles(std::span<const Vec3>(positions), triangles, triangle_materials, dropped);
   // No triangle uses these any more; a finite value keeps boxes and Embree's buffers sane.
   const auto finite = std::find_if(positions.begin(), positions.end(), is_finite);
   const Vec3 stand_in = finite == positions.end() ? Vec3(0) : *finite;

@@ -44,7 +44,10 @@ Mesh read_ply_mesh(const std::filesystem::path& path, const Context& context, st
 /// missing; nullptr and a warning if nothing is found or it cannot be read.
 std::shared_ptr<const Image> load_texture_image(const std::filesystem::path& path, Scene& scene, const Context& context);
 
-/// Removes triangles with out-of-range or repeated indices or non-finite vertices; adds to `dropped`.
+/// Removes triangles with out-of-range or repeated indices, non-finite vertices or no area; adds to `dropped`.
+void drop_bad_triangles(std::span<const Vec3> positions, std::vector<UVec3>& triangles, std::vector<std::uint16_t>* triangle_materials,
+                        std::uint64_t& dropped);
+/// The same, and gives vertices that are not finite (which no triangle uses any more) the place of one that is.
 void drop_bad_triangles(std::vector<Vec3>& positions, std::vector<UVec3>& triangles, std::vector<std::uint16_t>* triangle_materials,
                         std::uint64_t& dropped);
 

@@ -1,0 +1,29 @@
+// Triangle lists from glTF's topologies, and meshes that keep only the vertices they use.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace sightline::gltf {
+
+enum PrimitiveMode : std::uint64_t { kPoints = 0, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
+
+/// Number of triangles that `vertex_count` indices make; a rest that makes none is ignored.
+std::size_t triangle_count(std::uint64_t mode, std::size_t vertex_count);
+/// Triangles over the given indices, all with the winding of the topology.
+std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::span<const std::uint32_t> indices);
+/// The same for vertices in order.
+std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::size_t vertex_count);
+
+/// Copies the vertices that triangles use into arrays of the mesh's own, where they are but a small part of those it shares. Else every
+/// primitive would bring along all vertices of the file.
+void drop_unused_vertices(Mesh& mesh);
+/// Gives vertices with a zero normal that of the triangles around them.
+void repair_normals(Mesh& mesh);
+/// Box of the vertices that triangles use.
+Bounds triangle_bounds(const Mesh& mesh);
+
+}  // namespace sightline::gltf
