@@ -19,15 +19,15 @@ inline constexpr std::uint32_t kNoLight = 0xffffffffu;
 
 /// A point on a light as seen from a shading point.
 struct LightSample {
-  Vec3 wi{0, 0, 1};          ///< unit direction towards the light
-  float distance = 0;        ///< to the light point; +infinity for directional lights and environments
-  Vec3 point{0};             ///< on the light (finite lights)
-  Vec3 normal{0};            ///< of the emitting surface; 0 for points, directional lights and environments
-  float point_error = 0;     ///< absolute bound on the rounding error of `point`
-  Color radiance{0};         ///< arriving, unoccluded; for delta lights intensity / distance² or irradiance
-  float pdf = 0;             ///< solid angle, selection included; selection probability alone for delta lights; 0 = no sample
+  Vec3 wi{0, 0, 1};       ///< unit direction towards the light
+  float distance = 0;     ///< to the light point; +infinity for directional lights and environments
+  Vec3 point{0};          ///< on the light (finite lights)
+  Vec3 normal{0};         ///< of the emitting surface; 0 for points, directional lights and environments
+  float point_error = 0;  ///< absolute bound on the rounding error of `point`
+  Color radiance{0};      ///< arriving, unoccluded; for delta lights intensity / distance² or irradiance
+  float pdf = 0;          ///< solid angle, selection included; selection probability alone for delta lights; 0 = no sample
   bool is_delta = false;
-  bool is_mesh = false;      ///< on geometry that rays can hit (MIS with BSDF sampling applies)
+  bool is_mesh = false;  ///< on geometry that rays can hit (MIS with BSDF sampling applies)
   std::uint32_t light = kNoLight;
 };
 
@@ -38,6 +38,7 @@ struct LightSampleBatch {
   AlignedVector<std::uint8_t> is_delta, is_mesh;
   AlignedVector<std::uint32_t> light;
   void resize(std::size_t n);
+  void set(std::size_t i, const LightSample& sample);
 };
 
 /// How a light is chosen for a shading point: an interface, so that smarter choices can replace choice by power.
@@ -60,7 +61,7 @@ class LightTable {
   LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context);
   ~LightTable();
 
-  std::size_t size() const;          ///< entries, environment included
+  std::size_t size() const;  ///< entries, environment included
   bool has_environment() const;
   /// Chooses a light by `u_pick` and a point on it by `u`. pdf 0 where the light cannot reach `position`. `normal` = 0 allowed.
   LightSample sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const;

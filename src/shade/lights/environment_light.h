@@ -1,0 +1,57 @@
+// Sampling an environment in proportion to its radiance.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/core/context.h"
+#include "base/math/vec.h"
+#include "base/sample/alias_table.h"
+#include "scene/light.h"
+#include "shade/lights/environment_map.h"
+
+namespace sightline {
+
+/// An Environment, ready: radiance by direction, and a sampler whose density is that of the radiance as it is read (bilinear), averaged
+/// over the cells of a grid. A row of cells is chosen by an alias table, then a cell in the row by another, then a point within: two
+/// small tables keep enough bits of the random numbers for the point, which one table of all cells would not.
+class EnvironmentLight {
+ public:
+  EnvironmentLight(const Environment& environment, const Context& context);
+
+  /// From unit `direction` in world space.
+  Color radiance(const Vec3& direction) const;
+  /// A unit direction in world space; the zero vector where the picture has none. Density: pdf(direction).
+  Vec3 sample(const Vec2& u) const;
+  float pdf(const Vec3& direction) const;
+  /// Integral of the radiance's luminance over all directions.
+  double total_luminance() const { return total_luminance_; }
+  std::uint64_t memory_bytes() const;
+
+  /// Pictures with more pixels share cells: importance does not need their resolution.
+  static constexpr std::uint32_t kMaxCells = 1u << 21;
+
+ private:
+  struct Cell {
+    std::uint32_t x, y;
+  };
+  void build(const Context& context);
+  Cell cell_of(const Vec2& uv) const;
+  /// Borders of a cell in the unit square, lower then upper.
+  float column_border(std::uint32_t column) const;
+  float row_border(std::uint32_t row) const;
+
+  Color scale_;
+  std::optional<EnvironmentMap> map_;
+  Mat3 world_from_local_, local_from_world_;
+  std::uint32_t block_ = 1;  ///< pixels along a side of a cell
+  std::uint32_t columns_ = 0, rows_ = 0;
+  AliasTable row_table_;
+  std::vector<AliasTable> column_tables_;  ///< one a row
+  std::vector<float> row_cosines_;         ///< latlong: cosine of the polar angle at the borders of rows
+  double total_luminance_ = 0;
+};
+
+}  // namespace sightline

@@ -1,0 +1,132 @@
+#include "shade/light_table.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "shade/lights/light_lists.h"
+#include "shade/lights/power_picker.h"
+#include "trace/ray_batch.h"
+#include "trace/sphere.h"
+
+namespace sightline {
+
+struct LightTable::Impl {
+  Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context)
+      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(&texture_set) {}
+
+  LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
+  Color texture_of(const FlatLight& light, const Vec2& u) const {
+    const FlatEmitter& emitter = lists.emitters[light.emitter];
+    const Vec2 uv = lists.meshes.uv(emitter, light.primitive, flat_parameters(emitter.flags, u));
+    return glm::max(Color(textures->sample(emitter.texture, {.uv = uv})), Color(0));
+  }
+
+  LightLists lists;
+  PowerPicker picker;
+  const TextureSet* textures;
+};
+
+LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection, const Vec3& position, const Vec2& u) const {
+  if (index < lists.punctual_begin) {
+    const FlatLight& light = lists.flats[index];
+    const FlatEmitter& emitter = lists.emitters[light.emitter];
+    LightSample s = sample_flat(light, emitter, index, selection, position, u);
+    if (emitter.is(FlatEmitter::kTextured) && s.pdf > 0) s.radiance *= texture_of(light, u);
+    return s;
+  }
+  if (index < lists.sphere_begin) return sample_punctual(lists.punctuals[index - lists.punctual_begin], index, selection, position);
+  if (index == lists.environment_index) {
+    LightSample s;
+    s.light = index;
+    s.wi = lists.environment->sample(u);
+    s.distance = std::numeric_limits<float>::infinity();
+    s.pdf = s.wi == Vec3(0) ? 0.f : selection * lists.environment->pdf(s.wi);
+    if (s.pdf > 0) s.radiance = lists.environment->radiance(s.wi);
+    return s;
+  }
+  const SphereEmitter& sphere = lists.spheres[index - lists.sphere_begin];
+  LightSample s = sample_sphere(sphere, index, selection, position, u);
+  if (sphere.texture.valid() && s.pdf > 0) {
+    const Vec2 uv = sphere_uv(sphere_local_direction(lists.scene_spheres[sphere.source], s.point));
+    s.radiance *= glm::max(Color(textures->sample(sphere.texture, {.uv = uv})), Color(0));
+  }
+  return s;
+}
+
+LightTable::LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context)
+    : impl_(std::make_unique<const Impl>(scene, textures, bounds, context)) {}
+LightTable::~LightTable() = default;
+
+std::size_t LightTable::size() const { return impl_->lists.size(); }
+bool LightTable::has_environment() const { return impl_->lists.environment.has_value(); }
+
+LightSample LightTable::sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const {
+  const LightPicker::Pick pick = impl_->picker.pick(position, normal, u_pick);
+  if (!(pick.probability > 0)) return {};
+  return impl_->sample_light(pick.light, pick.probability, position, u);
+}
+
+void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
+                        std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
+  if (samples.pdf.size() < padded(count)) samples.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    samples.set(i,
+                sample({position.x[i], position.y[i], position.z[i]}, {normal.x[i], normal.y[i], normal.z[i]}, u_pick[i], {u0[i], u1[i]}));
+  }
+}
+
+std::uint32_t LightTable::light_of(std::uint32_t instance, std::uint32_t primitive) const {
+  if (instance == kNoHit) return kNoLight;
+  if (instance & kSphereBit) {
+    const std::uint32_t sphere = instance & ~kSphereBit;
+    return sphere < impl_->lists.light_of_sphere.size() ? impl_->lists.light_of_sphere[sphere] : kNoLight;
+  }
+  return impl_->lists.meshes.light_of(instance, primitive);
+}
+
+float LightTable::pdf(const Vec3& position, const Vec3& normal, std::uint32_t light, const Vec3& hit_point, const Vec3&,
+                      const Vec3& direction) const {
+  const LightLists& lists = impl_->lists;
+  if (light >= lists.size()) return 0;
+  const float selection = impl_->picker.probability(position, normal, light);
+  if (light < lists.punctual_begin) {
+    const FlatLight& flat = lists.flats[light];
+    return view_flat(flat, lists.emitters[flat.emitter].is(FlatEmitter::kTwoSided), position, hit_point, selection).pdf;
+  }
+  if (light < lists.sphere_begin) return 0;
+  if (light == lists.environment_index) return selection * lists.environment->pdf(direction);
+  return pdf_sphere(lists.spheres[light - lists.sphere_begin], selection, position, hit_point);
+}
+
+Color LightTable::emission(std::uint32_t light, const TexturePoint& point, bool front_side) const {
+  const LightLists& lists = impl_->lists;
+  const auto textured = [&](const Color& radiance, TextureId texture) {
+    return texture.valid() ? radiance * glm::max(Color(impl_->textures->sample(texture, point)), Color(0)) : radiance;
+  };
+  if (light < lists.punctual_begin) {
+    const FlatEmitter& emitter = lists.emitters[lists.flats[light].emitter];
+    return front_side || emitter.is(FlatEmitter::kTwoSided) ? textured(emitter.radiance, emitter.texture) : Color(0);
+  }
+  if (light >= lists.sphere_begin && light < lists.size() && light != lists.environment_index) {
+    // The front of a reversed sphere is its inside.
+    const SphereEmitter& sphere = lists.spheres[light - lists.sphere_begin];
+    const bool two_sided = sphere.emits_inside && sphere.emits_outside;
+    return front_side || two_sided ? textured(sphere.radiance, sphere.texture) : Color(0);
+  }
+  return Color(0);
+}
+
+Color LightTable::environment(const Vec3& direction) const {
+  return impl_->lists.environment ? impl_->lists.environment->radiance(direction) : Color(0);
+}
+
+float LightTable::environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const {
+  const LightLists& lists = impl_->lists;
+  if (!lists.environment) return 0;
+  return impl_->picker.probability(position, normal, lists.environment_index) * lists.environment->pdf(direction);
+}
+
+float LightTable::power(std::uint32_t light) const { return light < impl_->lists.size() ? impl_->lists.powers[light] : 0.f; }
+
+}  // namespace sightline
