@@ -63,9 +63,10 @@ class LightTable {
 
   std::size_t size() const;  ///< entries, environment included
   bool has_environment() const;
-  /// Chooses a light by `u_pick` and a point on it by `u`. pdf 0 where the light cannot reach `position`. `normal` = 0 allowed.
+  /// Chooses a light by `u_pick` (not read if there is only one) and a point on it by `u`. pdf 0 where the light cannot reach `position`. `normal` = 0 allowed.
   LightSample sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const;
-  /// The same for many points; random numbers as arrays.
+  /// The same for many points; random numbers as arrays (`u_pick` may hold anything if there is only one light). Grows `samples` if needed.
+  /// On every SIMD target bit for bit what the single call gives.
   void sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
               std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
   /// Entry of an emissive triangle (HitBatch::instance, primitive), or of a sphere with kSphereBit; kNoLight if it does not emit.

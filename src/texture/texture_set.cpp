@@ -42,13 +42,10 @@ struct TextureSet::Impl {
   std::uint64_t memory_bytes = 0;
 };
 
-TextureSet::TextureSet() : impl_(std::make_unique<const Impl>()) {}
-TextureSet::~TextureSet() = default;
-TextureSet::TextureSet(TextureSet&&) noexcept = default;
-TextureSet& TextureSet::operator=(TextureSet&&) noexcept = default;
+TextureSet::TextureSet() : impl_(std::make_shared<const Impl>()) {}
 
 TextureSet::TextureSet(const Scene& scene, const Context& context) {
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_shared<Impl>();
   impl->maps.resize(scene.textures.size());
 
   // Textures that show one image in one encoding share its levels.

@@ -17,14 +17,12 @@ struct TexturePoint {
   Vec2 duv_dx{0}, duv_dy{0};
 };
 
-/// The textures of one Scene. Immutable, shares pixels with the Scene; MIP levels are built on construction.
+/// The textures of one Scene. Immutable, shares pixels with the Scene; MIP levels are built on construction. Copies share everything.
 class TextureSet {
  public:
   TextureSet();
+  /// Throws Error{input} on textures that use themselves, are nested too deep, or whose images cannot be read.
   TextureSet(const Scene& scene, const Context& context);
-  ~TextureSet();
-  TextureSet(TextureSet&&) noexcept;
-  TextureSet& operator=(TextureSet&&) noexcept;
 
   /// Linear RGBA of the texture; an invalid id gives (1,1,1,1).
   Vec4 sample(TextureId texture, const TexturePoint& point) const;
@@ -39,7 +37,7 @@ class TextureSet {
 
  private:
   struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace sightline

@@ -13,18 +13,23 @@ namespace sightline {
 
 struct LightTable::Impl {
   Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context)
-      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(&texture_set) {}
+      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(texture_set) {}
 
+  /// A single light needs no random number.
+  LightPicker::Pick pick(const Vec3& position, const Vec3& normal, float u) const {
+    if (lists.size() == 1) return {0, picker.probability(position, normal, 0), 0};
+    return picker.pick(position, normal, u);
+  }
   LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
   Color texture_of(const FlatLight& light, const Vec2& u) const {
     const FlatEmitter& emitter = lists.emitters[light.emitter];
     const Vec2 uv = lists.meshes.uv(emitter, light.primitive, flat_parameters(emitter.flags, u));
-    return glm::max(Color(textures->sample(emitter.texture, {.uv = uv})), Color(0));
+    return glm::max(Color(textures.sample(emitter.texture, {.uv = uv})), Color(0));
   }
 
   LightLists lists;
   PowerPicker picker;
-  const TextureSet* textures;
+  TextureSet textures;
 };
 
 LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection, const Vec3& position, const Vec2& u) const {
@@ -49,7 +54,7 @@ LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection,
   LightSample s = sample_sphere(sphere, index, selection, position, u);
   if (sphere.texture.valid() && s.pdf > 0) {
     const Vec2 uv = sphere_uv(sphere_local_direction(lists.scene_spheres[sphere.source], s.point));
-    s.radiance *= glm::max(Color(textures->sample(sphere.texture, {.uv = uv})), Color(0));
+    s.radiance *= glm::max(Color(textures.sample(sphere.texture, {.uv = uv})), Color(0));
   }
   return s;
 }
@@ -62,7 +67,7 @@ std::size_t LightTable::size() const { return impl_->lists.size(); }
 bool LightTable::has_environment() const { return impl_->lists.environment.has_value(); }
 
 LightSample LightTable::sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const {
-  const LightPicker::Pick pick = impl_->picker.pick(position, normal, u_pick);
+  const LightPicker::Pick pick = impl_->pick(position, normal, u_pick);
   if (!(pick.probability > 0)) return {};
   return impl_->sample_light(pick.light, pick.probability, position, u);
 }
@@ -102,7 +107,7 @@ float LightTable::pdf(const Vec3& position, const Vec3& normal, std::uint32_t li
 Color LightTable::emission(std::uint32_t light, const TexturePoint& point, bool front_side) const {
   const LightLists& lists = impl_->lists;
   const auto textured = [&](const Color& radiance, TextureId texture) {
-    return texture.valid() ? radiance * glm::max(Color(impl_->textures->sample(texture, point)), Color(0)) : radiance;
+    return texture.valid() ? radiance * glm::max(Color(impl_->textures.sample(texture, point)), Color(0)) : radiance;
   };
   if (light < lists.punctual_begin) {
     const FlatEmitter& emitter = lists.emitters[lists.flats[light].emitter];
