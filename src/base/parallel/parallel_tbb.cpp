@@ -1,19 +1,35 @@
 // oneTBB backend of parallel_for: shares its workers with Embree's builder.
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
+#include <memory>
+#include <mutex>
 
 #include "base/core/error.h"
 #include "base/parallel/parallel.h"
 
 namespace sightline {
+namespace {
 
-void parallel_for(const Context& context, std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t, std::size_t)>& body) {
+// oneTBB starts no more workers than there are cores unless a global_control says so; of several living ones the smallest counts, so
+// there is one, which grows to the largest number ever asked for. The arenas keep each loop to its own number.
+void allow_threads(std::size_t count) {
+  static std::mutex mutex;
+  static std::unique_ptr<tbb::global_control> control;
+  using Control = tbb::global_control;
+  const std::lock_guard lock(mutex);
+  if (count <= Control::active_value(Control::max_allowed_parallelism)) return;
+  control.reset();
+  control = std::make_unique<Control>(Control::max_allowed_parallelism, count);
+}
+
+}  // namespace
+
+void parallel_for(const Context& context, std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunk_count = (count + grain - 1) / grain;
@@ -28,6 +44,7 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain,
   }
   // A shared counter hands chunks out in order: neighbouring chunks run at about the same time, which caches like, and long chunks at the
   // start do not wait behind a static split.
+  allow_threads(static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   std::atomic<std::size_t> next{0};
   arena.execute([&] {

@@ -14,8 +14,7 @@ namespace {
 thread_local int current_worker = 0;
 }
 
-void parallel_for(const Context& context, std::size_t count, std::size_t grain,
-                  const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for(const Context& context, std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunk_count = (count + grain - 1) / grain;

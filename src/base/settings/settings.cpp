@@ -83,10 +83,16 @@ std::string nearest_name(std::string_view name, std::span<const std::string> kno
 }
 
 const Setting& Schema::find(std::string_view name) const {
-  std::vector<std::string> known;
   for (const Setting& setting : settings_) {
     if (setting.name == name) return setting;
-    known.push_back(setting.name);
+  }
+  throw_unknown_setting(name, {this});
+}
+
+void throw_unknown_setting(std::string_view name, std::vector<const Schema*> schemas) {
+  std::vector<std::string> known;
+  for (const Schema* schema : schemas) {
+    for (const Setting& setting : schema->settings()) known.push_back(setting.name);
   }
   Error error = usage_error(fmt::format("unknown setting '{}'", name));
   if (const std::string nearest = nearest_name(name, known); !nearest.empty())

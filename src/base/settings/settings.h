@@ -10,6 +10,7 @@
 // A Schema made from it drives --set, --help, `methods --json`, JSON settings, Python keywords and the reference pages.
 #pragma once
 
+#include <algorithm>
 #include <any>
 #include <cstdint>
 #include <functional>
@@ -25,7 +26,7 @@ namespace sightline {
 
 /// What is known about one setting besides name, type and default.
 struct SettingInfo {
-  std::string help{};                ///< one line
+  std::string help{};  ///< one line
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   std::string unit{};                  ///< "px", "rad", "s", ... or empty
@@ -40,8 +41,8 @@ struct Setting {
   std::string name;
   SettingType type;
   SettingInfo info;
-  std::function<std::string(const void*)> get;                ///< value as text, round-trips through `set`
-  std::function<void(void*, std::string_view)> set;           ///< throws Error{usage} on a bad or out-of-range value
+  std::function<std::string(const void*)> get;       ///< value as text, round-trips through `set`
+  std::function<void(void*, std::string_view)> set;  ///< throws Error{usage} on a bad or out-of-range value
 };
 
 /// Converters used by Schema; text is what the command line and JSON carry.
@@ -67,16 +68,20 @@ class Schema {
   template <class S>
   static Schema of() {
     Schema schema;
-    S::describe([&]<class M>(std::string name, M S::*member, SettingInfo info) { schema.add<S, M>(std::move(name), member, std::move(info)); });
+    S::describe(
+        [&]<class M>(std::string name, M S::* member, SettingInfo info) { schema.add<S, M>(std::move(name), member, std::move(info)); });
     return schema;
   }
 
  private:
   template <class S, class M>
-  void add(std::string name, M S::*member, SettingInfo info);
+  void add(std::string name, M S::* member, SettingInfo info);
 
   std::vector<Setting> settings_;
 };
+
+/// Throws Error{usage} that names the nearest key of several schemas.
+[[noreturn]] void throw_unknown_setting(std::string_view name, std::vector<const Schema*> schemas);
 
 /// The known name closest to `name` (edit distance at most a third of its length), or empty.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
@@ -109,7 +114,7 @@ class SettingsValue {
 };
 
 template <class S, class M>
-void Schema::add(std::string name, M S::*member, SettingInfo info) {
+void Schema::add(std::string name, M S::* member, SettingInfo info) {
   Setting setting{name, SettingType::text, info, {}, {}};
   if constexpr (std::is_same_v<M, bool>) {
     setting.type = SettingType::boolean;
@@ -124,7 +129,11 @@ void Schema::add(std::string name, M S::*member, SettingInfo info) {
     setting.type = SettingType::integer;
     if (std::is_unsigned_v<M> && setting.info.minimum < 0) setting.info.minimum = 0;
     setting.get = [member](const void* s) { return setting_to_text(static_cast<std::int64_t>(static_cast<const S*>(s)->*member)); };
-    setting.set = [member, name, limits = setting.info](void* s, std::string_view text) {
+    // What the type cannot hold is out of range as well, though help need not say so.
+    SettingInfo limits = setting.info;
+    limits.minimum = std::max(limits.minimum, static_cast<double>(std::numeric_limits<M>::min()));
+    limits.maximum = std::min(limits.maximum, static_cast<double>(std::numeric_limits<M>::max()));
+    setting.set = [member, name, limits](void* s, std::string_view text) {
       static_cast<S*>(s)->*member = static_cast<M>(parse_integer(name, text, limits));
     };
   } else if constexpr (std::is_floating_point_v<M>) {
