@@ -49,11 +49,11 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   direct_.resize(kBatch), indirect_.resize(kBatch);
   slot_.resize(kBatch), throughput_.resize(kBatch), bsdf_pdf_.resize(kBatch), previous_.resize(kBatch), previous_normal_.resize(kBatch);
   medium_.resize(kBatch), cone_width_.resize(kBatch), cone_spread_.resize(kBatch);
-  bsdf_.resize(kBatch), frame_.resize(kBatch), shaded_.resize(kBatch);
-  scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), source_.resize(kBatch);
+  bsdf_.resize(kBatch), frame_.resize(kBatch), shaded_.resize(kBatch), plain_.resize(kBatch);
+  scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), pdf_.resize(kBatch), lane_point_.resize(kBatch);
   u0_.resize(kBatch), u1_.resize(kBatch), u2_.resize(kBatch), u3_.resize(kBatch);
-  light_position_.resize(kBatch), light_normal_.resize(kBatch);
-  contribution_.resize(kBatch), shadow_source_.resize(kBatch), occluded_.resize(kBatch);
+  light_position_.resize(kBatch), light_normal_.resize(kBatch), wi_.resize(kBatch);
+  shadow_.resize(kBatch), occluded_.resize(kBatch);
 }
 
 void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
@@ -108,7 +108,7 @@ void PathKernel::start_paths(const Tile&, std::span<const std::uint32_t> pixels,
   for (std::size_t i = 0; i < alive_; ++i) {
     rays_.t_near[i] = 0, rays_.t_far[i] = kInfinity;
     slot_[i] = static_cast<std::uint32_t>(i);
-    throughput_[i] = Color(1);
+    store(throughput_, i, Color(1));
     direct_[i] = indirect_[i] = Color(0);
     bsdf_pdf_[i] = -1;
     medium_[i] = {};
@@ -127,14 +127,15 @@ void PathKernel::add_emission(std::uint32_t bounce) {
   const LightTable& lights = world_.lights();
   for (std::size_t i = 0; i < alive_; ++i) {
     const Vec3 direction = load(rays_.direction, i);
-    if (hits_.hit(i) && medium_[i].valid()) throughput_[i] *= glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]);
+    if (hits_.hit(i) && medium_[i].valid())
+      store(throughput_, i, load(throughput_, i) * glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]));
     if (!hits_.hit(i)) {
       if (!lights.has_environment()) continue;
       float weight = 1;
       if (bsdf_pdf_[i] >= 0)
         weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) *
                                                    lights.environment_pdf(previous_[i], previous_normal_[i], direction));
-      add_radiance(slot_[i], bounce <= 1, throughput_[i] * lights.environment(direction) * weight);
+      add_radiance(slot_[i], bounce <= 1, load(throughput_, i) * lights.environment(direction) * weight);
       continue;
     }
     if (surfaces_.light[i] == kNoLight) continue;
@@ -150,7 +151,7 @@ void PathKernel::add_emission(std::uint32_t bounce) {
           lights.pdf(previous_[i], previous_normal_[i], surfaces_.light[i], load(surfaces_.position, i), normal, direction);
       weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) * light_pdf);
     }
-    add_radiance(slot_[i], bounce <= 1, throughput_[i] * emission * weight);
+    add_radiance(slot_[i], bounce <= 1, load(throughput_, i) * emission * weight);
   }
 }
 
@@ -164,16 +165,10 @@ void PathKernel::evaluate_materials(std::uint32_t bounce) {
   }
   for (std::size_t i = 0; i < alive_; ++i) {
     shaded_[i] = hits_.hit(i);
-    if (!shaded_[i]) continue;
+    plain_[i] = shaded_[i] && surfaces_.plain[i];
+    if (!shaded_[i] || plain_[i]) continue;  // the vector path needs no more than the surface says
     const Vec3 wo = -load(rays_.direction, i);
     const Vec3 geometric = load(surfaces_.geometric_normal, i);
-    Vec3 normal = load(surfaces_.shading_normal, i);
-    if (surfaces_.plain[i]) {
-      if (glm::dot(wo, normal) * glm::dot(wo, geometric) <= 0) normal = geometric;
-      frame_[i] = frame_from_normal(normal);
-      bsdf_[i] = Bsdf(Lambert{load(surfaces_.albedo, i)});
-      continue;
-    }
     const MaterialId id = surfaces_.material[i] == kDefaultMaterial ? MaterialId{} : MaterialId{surfaces_.material[i]};
     const SurfaceDetail detail = world_.detail(rays_, hits_, i, cone_width_[i] + cone_spread_[i] * hits_.t[i]);
     float u_mix = mix ? u1_[i] : 0.f;
@@ -193,8 +188,8 @@ void PathKernel::write_aovs(Frame& frame) {
     const std::uint32_t pixel = pixel_[slot_[i]];
     const Vec3 position = load(surfaces_.position, i);
     const bool emitter = surfaces_.light[i] != kNoLight;
-    frame.add(Aov::albedo, pixel, bsdf_[i].albedo());
-    frame.add(Aov::normal, pixel, frame_[i].normal);
+    frame.add(Aov::albedo, pixel, plain_[i] ? load(surfaces_.albedo, i) : bsdf_[i].albedo());
+    frame.add(Aov::normal, pixel, plain_[i] ? load(surfaces_.shading_normal, i) : frame_[i].normal);
     frame.add(Aov::position, pixel, position);
     frame.add(Aov::depth, pixel, Vec3(glm::length(position - load(rays_.origin, i))));
     frame.add(Aov::surface, pixel, emitter ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
@@ -203,75 +198,106 @@ void PathKernel::write_aovs(Frame& frame) {
 
 void PathKernel::sample_lights(std::uint32_t bounce) {
   if (world_.lights().size() == 0) return;
-  // Lanes are (shading point, light sample) pairs, the samples of a point side by side; they are worked off in chunks.
+  if (options_.light_samples == 1)
+    sample_lights_once(bounce);
+  else
+    sample_lights_often(bounce);
+}
+
+void PathKernel::draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals) {
+  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPoint), count, u0_.data(), u1_.data());
+  if (world_.lights().size() > 1)
+    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), count, u2_.data(), u3_.data());
+  world_.lights().sample(positions, normals, u2_, u0_, u1_, count, light_);
+}
+
+// One light sample a point: lanes are the points themselves, nothing is copied.
+void PathKernel::sample_lights_once(std::uint32_t bounce) {
+  for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+  draw_light_samples(bounce, alive_, surfaces_.position, surfaces_.geometric_normal);
+  shadow_.count = 0;
+  append_direct_light_each({&rays_, &surfaces_, &throughput_}, 0, light_, alive_, plain_.data(), {1, !options_.one_hit}, shadow_);
+  for (std::size_t i = 0; i < alive_; ++i) {
+    if (shaded_[i] && !plain_[i] && !bsdf_[i].is_delta()) append_general(i, i);
+  }
+  trace_shadows(bounce);
+}
+
+// Several samples a point: the samples of a point stand side by side, points are worked off in chunks of lanes.
+void PathKernel::sample_lights_often(std::uint32_t bounce) {
+  const std::uint32_t samples = static_cast<std::uint32_t>(options_.light_samples);
+  const DirectLightOptions direct{static_cast<float>(samples), !options_.one_hit};
   std::size_t lanes = 0;
-  const std::size_t samples = static_cast<std::size_t>(options_.light_samples);
   const auto flush = [&] {
-    if (lanes > 0) light_chunk(bounce, 0, lanes);
+    if (lanes == 0) return;
+    draw_light_samples(bounce, lanes, light_position_, light_normal_);
+    shadow_.count = 0;
+    for (std::size_t lane = 0; lane < lanes;) {
+      const std::uint32_t point = lane_point_[lane];
+      std::size_t end = lane + 1;
+      while (end < lanes && lane_point_[end] == point) ++end;
+      if (plain_[point]) {
+        append_direct_light({&rays_, &surfaces_, &throughput_}, point, light_, lane, end - lane, direct, shadow_);
+      } else {
+        for (std::size_t k = lane; k < end; ++k) append_general(point, k);
+      }
+      lane = end;
+    }
+    trace_shadows(bounce);
     lanes = 0;
   };
   for (std::size_t i = 0; i < alive_; ++i) {
-    if (!shaded_[i] || bsdf_[i].is_delta()) continue;
-    const std::uint32_t slot = slot_[i];
-    for (std::size_t k = 0; k < samples; ++k) {
-      scratch_key_[lanes] = key_[slot];
-      scratch_index_[lanes] = sample_[slot] * static_cast<std::uint32_t>(samples) + static_cast<std::uint32_t>(k);
-      source_[lanes] = static_cast<std::uint32_t>(i);
-      if (++lanes == kBatch) flush();
+    if (!shaded_[i] || (!plain_[i] && bsdf_[i].is_delta())) continue;
+    const std::uint32_t slot = slot_[i], key = key_[slot], first_index = sample_[slot] * samples;
+    const Vec3 position = load(surfaces_.position, i), normal = load(surfaces_.geometric_normal, i);
+    for (std::uint32_t k = 0; k < samples; ++k) {
+      scratch_key_[lanes] = key;
+      scratch_index_[lanes] = first_index + k;
+      lane_point_[lanes] = static_cast<std::uint32_t>(i);
+      store(light_position_, lanes, position);
+      store(light_normal_, lanes, normal);
+      if (++lanes == kLightChunk) flush();
     }
   }
   flush();
 }
 
-void PathKernel::light_chunk(std::uint32_t bounce, std::size_t, std::size_t count) {
-  const LightTable& lights = world_.lights();
+// One light sample at a point whose material is not plain Lambert: the scalar definition of what the vector path does.
+void PathKernel::append_general(std::size_t point, std::size_t lane) {
+  if (!(light_.pdf[lane] > 0)) return;
   const float samples = static_cast<float>(options_.light_samples);
-  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPoint), count, u0_.data(), u1_.data());
-  if (lights.size() > 1)
-    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), count, u2_.data(), u3_.data());
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const std::size_t i = source_[lane];
-    store(light_position_, lane, load(surfaces_.position, i));
-    store(light_normal_, lane, load(surfaces_.geometric_normal, i));
+  const Vec3 wi = load(light_.wi, lane);
+  const Vec3 wo = -load(rays_.direction, point);
+  const Vec3 geometric = load(surfaces_.geometric_normal, point);
+  const Vec3 wo_local = frame_[point].to_local(wo), wi_local = frame_[point].to_local(wi);
+  // Reflection by the shading normal must be reflection by the geometric one, else light leaks through.
+  if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) return;
+  const BsdfEval eval = bsdf_[point].evaluate(wo_local, wi_local);
+  Color value = eval.f_cos * load(light_.radiance, lane) * (1 / (light_.pdf[lane] * samples));
+  if (is_black(value)) return;
+  // Rays find emissive geometry and the environment too; lights that only sampling sees keep weight 1.
+  const bool infinite = std::isinf(light_.distance[lane]);
+  const bool other_technique = !options_.one_hit && !light_.is_delta[lane] && (light_.is_mesh[lane] || infinite);
+  if (other_technique) value *= power_heuristic(samples * light_.pdf[lane], eval.pdf);
+  const Vec3 origin = offset_origin(load(surfaces_.position, point), geometric, surfaces_.error[point], wi);
+  if (infinite) {
+    shadow_.rays.set(shadow_.count, {origin, 0, wi, kInfinity});
+  } else {
+    const Vec3 target = offset_origin(load(light_.point, lane), load(light_.normal, lane), light_.point_error[lane], -wi);
+    shadow_.rays.set(shadow_.count, {origin, 0, target - origin, 1});
   }
-  lights.sample(light_position_, light_normal_, u2_, u0_, u1_, count, light_);
+  store(shadow_.contribution, shadow_.count, load(throughput_, point) * value);
+  shadow_.point[shadow_.count] = static_cast<std::uint32_t>(point);
+  ++shadow_.count;
+}
 
-  // Contributions if nothing is in between; only the non-zero ones ask for a ray.
-  shadow_.resize(count);
-  std::size_t rays = 0;
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    if (!(light_.pdf[lane] > 0)) continue;
-    const std::size_t i = source_[lane];
-    const Vec3 wi = load(light_.wi, lane);
-    const Vec3 wo = -load(rays_.direction, i);
-    const Vec3 geometric = load(surfaces_.geometric_normal, i);
-    const Vec3 wo_local = frame_[i].to_local(wo), wi_local = frame_[i].to_local(wi);
-    // Reflection by the shading normal must be reflection by the geometric one, else light leaks through.
-    if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) continue;
-    const BsdfEval eval = bsdf_[i].evaluate(wo_local, wi_local);
-    Color value = eval.f_cos * load(light_.radiance, lane) * (1 / (light_.pdf[lane] * samples));
-    if (is_black(value)) continue;
-    // Rays find emissive geometry and the environment too; lights that only sampling sees keep weight 1.
-    const bool other_technique = !options_.one_hit && !light_.is_delta[lane] && (light_.is_mesh[lane] || std::isinf(light_.distance[lane]));
-    if (other_technique) value *= power_heuristic(samples * light_.pdf[lane], eval.pdf);
-    const Vec3 position = load(surfaces_.position, i);
-    const Vec3 origin = offset_origin(position, geometric, surfaces_.error[i], wi);
-    if (std::isinf(light_.distance[lane])) {
-      shadow_.set(rays, {origin, 0, wi, kInfinity});
-    } else {
-      const Vec3 target = offset_origin(load(light_.point, lane), load(light_.normal, lane), light_.point_error[lane], -wi);
-      shadow_.set(rays, {origin, 0, target - origin, 1});
-    }
-    contribution_[rays] = throughput_[i] * value;
-    shadow_source_[rays] = static_cast<std::uint32_t>(i);
-    ++rays;
-  }
-  if (rays == 0) return;
-  shadow_.size = rays;
+void PathKernel::trace_shadows(std::uint32_t bounce) {
+  if (shadow_.count == 0) return;
+  shadow_.rays.size = shadow_.count;
   const bool coherent = bounce == 0;
-  world_.tracer().occluded(shadow_, std::span(occluded_), coherent ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
-  for (std::size_t r = 0; r < rays; ++r) {
-    if (!occluded_[r]) add_radiance(slot_[shadow_source_[r]], bounce == 0, contribution_[r]);
+  world_.tracer().occluded(shadow_.rays, std::span(occluded_), coherent ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
+  for (std::size_t r = 0; r < shadow_.count; ++r) {
+    if (!occluded_[r]) add_radiance(slot_[shadow_.point[r]], bounce == 0, load(shadow_.contribution, r));
   }
 }
 
@@ -279,6 +305,8 @@ void PathKernel::scatter(std::uint32_t bounce) {
   for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());
+
+  sample_lambert({&rays_, &surfaces_, &throughput_}, u2_.data(), u3_.data(), alive_, wi_, pdf_.data());
 
   std::size_t kept = 0;
   for (std::size_t i = 0; i < alive_; ++i) {
@@ -290,10 +318,14 @@ void PathKernel::scatter(std::uint32_t bounce) {
     const Material* material = material_index < world_.scene().materials.size() ? &world_.scene().materials[material_index] : nullptr;
 
     Vec3 wi;
-    Color throughput = throughput_[i];
+    Color throughput = load(throughput_, i);
     float pdf = -1;
     bool crosses = false;
-    if (material && std::holds_alternative<InterfaceMaterial>(material->model)) {
+    if (plain_[i]) {
+      if (!(pdf_[i] > 0)) continue;
+      wi = load(wi_, i), pdf = pdf_[i];
+      throughput *= load(surfaces_.albedo, i);
+    } else if (material && std::holds_alternative<InterfaceMaterial>(material->model)) {
       wi = direction, pdf = bsdf_pdf_[i], crosses = true;
     } else {
       const Vec3 wo_local = frame_[i].to_local(-direction);
@@ -319,7 +351,7 @@ void PathKernel::scatter(std::uint32_t bounce) {
     MediumId medium = medium_[i];
     if (crosses && material) medium = glm::dot(wi, geometric) < 0 ? material->interior : MediumId{};
     slot_[kept] = slot_[i];
-    throughput_[kept] = throughput;
+    store(throughput_, kept, throughput);
     bsdf_pdf_[kept] = pdf;
     const bool passes = material && std::holds_alternative<InterfaceMaterial>(material->model);
     previous_[kept] = passes ? previous_[i] : position;

@@ -8,6 +8,7 @@
 #include "film/frame.h"
 #include "film/view.h"
 #include "methods/method.h"
+#include "methods/reference/lambert_lanes.h"
 #include "shade/bsdf.h"
 #include "world/world.h"
 
@@ -32,13 +33,19 @@ class PathKernel {
 
  private:
   static constexpr std::size_t kBatch = 2048;
+  /// Light samples worked off at a time: what the light batch and the shadow rays need stays in the L2 cache.
+  static constexpr std::size_t kLightChunk = 512;
 
   void start_paths(const Tile& tile, std::span<const std::uint32_t> pixels, SampleRange samples);
   void trace(std::uint32_t bounce);
   void add_emission(std::uint32_t bounce);
   void evaluate_materials(std::uint32_t bounce);
   void sample_lights(std::uint32_t bounce);
-  void light_chunk(std::uint32_t bounce, std::size_t first, std::size_t count);
+  void sample_lights_once(std::uint32_t bounce);
+  void sample_lights_often(std::uint32_t bounce);
+  void draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals);
+  void append_general(std::size_t point, std::size_t lane);
+  void trace_shadows(std::uint32_t bounce);
   void scatter(std::uint32_t bounce);
   void write_aovs(Frame& frame);
   void add_radiance(std::uint32_t slot, bool direct, const Color& value);
@@ -56,7 +63,7 @@ class PathKernel {
   // One element a living path, compacted after each bounce.
   std::size_t alive_ = 0;
   AlignedVector<std::uint32_t> slot_;
-  std::vector<Color> throughput_;
+  Vec3Batch throughput_;
   std::vector<float> bsdf_pdf_;                   ///< of the ray being traced; < 0 after the camera or a delta bounce
   std::vector<Vec3> previous_, previous_normal_;  ///< where the ray left
   std::vector<MediumId> medium_;
@@ -68,16 +75,16 @@ class PathKernel {
   // One element a shading point of this bounce (index = compacted index).
   std::vector<Bsdf> bsdf_;
   std::vector<Frame3> frame_;
-  std::vector<std::uint8_t> shaded_;  ///< 1: a surface with a BSDF
+  AlignedVector<std::uint8_t> shaded_;  ///< 1: a surface with a BSDF
 
   // Scratch of the stages.
-  AlignedVector<std::uint32_t> scratch_key_, scratch_index_, source_;
-  AlignedVector<float> u0_, u1_, u2_, u3_;
-  Vec3Batch light_position_, light_normal_;
+  AlignedVector<std::uint32_t> scratch_key_, scratch_index_;
+  AlignedVector<float> u0_, u1_, u2_, u3_, pdf_;
+  AlignedVector<std::uint8_t> plain_;  ///< shaded and plain: the vector path
+  std::vector<std::uint32_t> lane_point_;
+  Vec3Batch light_position_, light_normal_, wi_;
   LightSampleBatch light_;
-  RayBatch shadow_;
-  std::vector<Color> contribution_;
-  std::vector<std::uint32_t> shadow_source_;
+  ShadowLanes shadow_;
   AlignedVector<std::uint8_t> occluded_;
   RayCounts counts_;
 };

@@ -1,0 +1,23 @@
+// One function a command; each returns the process's exit code.
+#pragma once
+
+#include "base/core/context.h"
+#include "command_line.h"
+#include "console.h"
+
+namespace sightline::app {
+
+/// Exit codes (docs/cli.md).
+enum ExitCode : int { kDone = 0, kBug = 1, kUsage = 2, kInput = 3, kResource = 4, kInterrupted = 5, kOverThreshold = 6 };
+
+int run_render(const CommandLine& line, Console& console, Context& context);
+int run_compare(const CommandLine& line, Console& console, Context& context);
+int run_methods(const CommandLine& line);
+int run_info(const CommandLine& line, Context& context);
+int run_bench(const CommandLine& line, Console& console, Context& context);
+int run_merge(const CommandLine& line, Context& context);
+
+/// Writes text to a file, or to stdout for "-".
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace sightline::app

@@ -1,0 +1,71 @@
+// The progressive loop: passes until a limit is reached, with checkpoints and sinks.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/frame.h"
+#include "film/frame_file.h"
+#include "methods/method.h"
+#include "session/scheduler.h"
+#include "session/stopwatch.h"
+
+namespace sightline {
+
+/// What to render with, as the user states it.
+struct RenderRequest {
+  std::string method = "reference";
+  std::optional<std::string> visibility;
+  std::vector<std::string> settings;  ///< "key=value" of the method or the visibility
+  std::optional<int> spp, light_samples, max_bounces;
+  std::optional<double> target_error, time_limit_s;
+  std::optional<SampleRange> sample_range;  ///< part of the total spp
+  AovSet aovs;
+  std::optional<std::filesystem::path> checkpoint, resume;
+};
+
+/// Wall seconds by phase.
+struct Timings {
+  double load = 0, build = 0, prepare = 0, render = 0, write = 0, total = 0;
+};
+
+struct RenderResult {
+  Frame frame;
+  PassStatistics statistics;
+  StopReason stop = StopReason::none;
+  std::string method, visibility;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< all, with defaults, of method then visibility
+  int spp = 0, light_samples = 0, max_bounces = 0;
+  std::optional<double> error;
+  Timings seconds;
+};
+
+/// Receives snapshots; called between passes on the rendering thread. The session knows nothing of files, bars or servers.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  virtual void pass_done(const Frame& frame, SampleRange pass, SampleRange all) = 0;
+};
+
+/// Renders one view. `filter` names the pixel filter that View was made with unless total spp is 1 (then rays go through pixel centres).
+/// Cancelling the context ends the loop with what complete tiles hold (StopReason::interrupted); nothing is thrown for it.
+RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
+                    const RenderRequest& request, const Context& context, const Stopwatch& since_start, std::vector<FrameSink*> sinks = {});
+
+/// The settings of a request resolved: throws Error{usage} for unknown keys (nearest of both schemas) and bad values.
+struct ResolvedSettings {
+  SettingsValue method, visibility;
+};
+ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& visibility, const std::vector<std::string>& assignments);
+
+/// What two frames must share to be added up or continued.
+FrameIdentity frame_identity(const World& world, const Camera& camera, IVec2 size_px, const RenderResult& result, std::uint64_t seed);
+
+/// Name of the SIMD target that Highway kernels run on ("AVX3", ...).
+std::string simd_target_name();
+
+}  // namespace sightline

@@ -1,0 +1,123 @@
+#include "film/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/core/error.h"
+#include "film/frame_file.h"
+
+namespace sightline {
+namespace {
+
+void fill(Frame& frame, SampleRange range) {
+  for (std::uint32_t pixel = 0; pixel < static_cast<std::uint32_t>(frame.width() * frame.height()); ++pixel) {
+    for (std::uint32_t s = range.begin; s < range.end; ++s) {
+      const float v = std::sin(static_cast<float>(pixel * 31 + s)) + 1.1f;
+      frame.add_color(pixel, s, Color(v, v * 0.3f, v * v));
+      frame.add(Aov::albedo, pixel, Vec3(v));
+    }
+  }
+  for (std::size_t tile = 0; tile < frame.tile_count(); ++tile) frame.set_samples_done(tile, frame.samples_done(tile) + range.count());
+}
+
+AovSet some_layers() {
+  AovSet aovs = parse_aovs("albedo,variance");
+  return aovs;
+}
+
+TEST(Frame, TilesCoverEveryPixelOnce) {
+  const Frame frame(100, 67, {});
+  std::vector<int> covered(100 * 67);
+  for (std::size_t t = 0; t < frame.tile_count(); ++t) {
+    const Tile tile = frame.tile(t);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) ++covered[static_cast<std::size_t>(y * 100 + x)];
+    }
+  }
+  for (const int count : covered) EXPECT_EQ(count, 1);
+}
+
+TEST(Frame, MergedRangesEqualOneRunBitForBit) {
+  Frame whole(40, 33, some_layers()), first(40, 33, some_layers()), second(40, 33, some_layers(), 3);
+  fill(whole, {0, 10});
+  fill(first, {0, 3});
+  fill(second, {3, 10});
+  second.merge(first);
+  EXPECT_EQ(second.first_sample(), 0u);
+  EXPECT_EQ(second.samples_done(), 10u);
+  for (const AovInfo& info : aov_table()) {
+    const auto a = whole.sums(info.id), b = second.sums(info.id);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i], b[i]);
+  }
+}
+
+TEST(Frame, DropsAndCountsWhatIsNotFinite) {
+  Frame frame(4, 4, {});
+  frame.add_color(5, 7, Color(std::numeric_limits<float>::quiet_NaN(), 1, 1));
+  frame.add_color(3, 9, Color(1, std::numeric_limits<float>::infinity(), 1));
+  frame.add_color(3, 1, Color(2, 2, 2));
+  frame.set_samples_done(0, 1);
+  EXPECT_EQ(frame.nonfinite_samples(), 2u);
+  ASSERT_TRUE(frame.first_bad_sample());
+  EXPECT_EQ(frame.first_bad_sample()->pixel, 3u);
+  EXPECT_EQ(frame.first_bad_sample()->sample, 9u);
+  EXPECT_EQ(frame.color(3), Color(2));
+  EXPECT_EQ(frame.color(5), Color(0));
+}
+
+TEST(Frame, EstimatesTheErrorOfItsMean) {
+  // Pixels of value 0 or 2 with equal chance over n samples: relative standard error 1 / sqrt(n - 1).
+  Frame frame(8, 8, parse_aovs("variance"));
+  constexpr std::uint32_t kSamples = 64;
+  for (std::uint32_t pixel = 0; pixel < 64; ++pixel) {
+    for (std::uint32_t s = 0; s < kSamples; ++s) frame.add_color(pixel, s, Color(s % 2 ? 2.f : 0.f));
+  }
+  frame.set_samples_done(0, kSamples);
+  ASSERT_TRUE(frame.estimated_error());
+  EXPECT_NEAR(*frame.estimated_error(), 1 / std::sqrt(kSamples - 1.0), 1e-6);
+}
+
+TEST(FrameFile, RoundTripKeepsEveryBit) {
+  Frame frame(40, 33, some_layers(), 5);
+  fill(frame, {5, 9});
+  const std::vector<std::byte> bytes = encode_frame(frame, {"identity"}, "{\"a\":1}");
+  const StoredFrame stored = decode_frame(bytes, "test");
+  EXPECT_EQ(stored.identity.text, "identity");
+  EXPECT_EQ(stored.note, "{\"a\":1}");
+  EXPECT_EQ(stored.frame.first_sample(), 5u);
+  EXPECT_EQ(stored.frame.samples_done(), 4u);
+  for (const AovInfo& info : aov_table()) {
+    const auto a = frame.sums(info.id), b = stored.frame.sums(info.id);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i], b[i]);
+  }
+}
+
+TEST(FrameFile, DamageIsAnInputErrorAtEveryByte) {
+  Frame frame(9, 7, {});
+  fill(frame, {0, 2});
+  const std::vector<std::byte> bytes = encode_frame(frame, {"x"}, "");
+  for (std::size_t cut = 0; cut < bytes.size(); cut += 7) EXPECT_THROW(decode_frame(std::span(bytes).first(cut), "cut"), Error);
+  for (std::size_t i = 0; i < bytes.size(); i += 5) {
+    std::vector<std::byte> damaged = bytes;
+    damaged[i] ^= std::byte{0x41};
+    EXPECT_THROW(decode_frame(damaged, "damaged"), Error) << "byte " << i;
+  }
+}
+
+TEST(Aov, UnknownLayerNamesTheNearest) {
+  try {
+    parse_aovs("albedo,norml");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_NE(std::string(error.what()).find("normal"), std::string::npos);
+  }
+  EXPECT_TRUE(parse_aovs("all").has(Aov::depth));
+}
+
+}  // namespace
+}  // namespace sightline
