@@ -6,8 +6,8 @@ float fresnel_dielectric_diffuse(float eta) {
   if (!(eta > 1)) return 0;
   // The closed form subtracts large terms near 1; there the reflectance grows linearly from nothing, and below this bound it is under 0.6
   // %.
-  constexpr double kSeriesBound = 1.002;
-  if (eta < kSeriesBound) return static_cast<float>((eta - 1.0) / (kSeriesBound - 1.0)) * fresnel_dielectric_diffuse(kSeriesBound);
+  constexpr float kSeriesBound = 1.002f;
+  if (eta < kSeriesBound) return (eta - 1) / (kSeriesBound - 1) * fresnel_dielectric_diffuse(kSeriesBound);
   const double n = eta, n2 = n * n, n4 = n2 * n2;
   const double a = (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1));
   const double b = n2 * (n2 - 1) * (n2 - 1) / ((n2 + 1) * (n2 + 1) * (n2 + 1)) * std::log((n - 1) / (n + 1));

@@ -18,16 +18,16 @@ struct AxisPoint {
   float fraction;
 
   AxisPoint(float position, int count) {
-    const float scaled = std::clamp(position, 0.f, 1.f) * static_cast<float>(count - 1);
+    const float scaled = (position > 0 ? std::min(position, 1.f) : 0.f) * static_cast<float>(count - 1);
     low = std::min(static_cast<int>(scaled), count - 2);
     fraction = scaled - static_cast<float>(low);
   }
   float mix(float a, float b) const { return a + fraction * (b - a); }
 };
 
-AxisPoint cos_axis(float cos_theta) { return {std::sqrt(std::clamp(cos_theta, 0.f, 1.f)), kCosCount}; }
+AxisPoint cos_axis(float cos_theta) { return {std::sqrt(cos_theta), kCosCount}; }
 AxisPoint alpha_axis(const Ggx& ggx) { return {std::sqrt(std::sqrt(ggx.alpha().x * ggx.alpha().y)), kAlphaCount}; }
-AxisPoint eta_axis(float eta) { return {2 * (eta - 1) / (eta + 1), kEtaCount}; }
+AxisPoint eta_axis(float eta) { return {std::sqrt(2 * (eta - 1) / (eta + 1)), kEtaCount}; }
 
 /// Sums `term(reflected, shadowing, cosine at the micro-facet)` over visible normals.
 template <class Term>
@@ -50,21 +50,22 @@ void for_each_reflection(float cos_theta, float alpha, int resolution, Term&& te
 }  // namespace
 
 float ggx_dielectric_albedo(float cos_theta, const Ggx& ggx, float eta) {
-  if (ggx.is_smooth()) return fresnel_dielectric(cos_theta, eta);
+  const float smooth = fresnel_dielectric(cos_theta, eta);
+  if (ggx.is_smooth()) return smooth;
   const AxisPoint c = cos_axis(cos_theta), a = alpha_axis(ggx), e = eta_axis(eta);
   const auto row = [&](int eta_index, int alpha_index) {
     const float* values = kDielectric[eta_index][alpha_index] + c.low;
     return c.mix(values[0], values[1]);
   };
   const auto plane = [&](int eta_index) { return a.mix(row(eta_index, a.low), row(eta_index, a.low + 1)); };
-  return e.mix(plane(e.low), plane(e.low + 1));
+  return smooth * e.mix(plane(e.low), plane(e.low + 1));
 }
 
 float ggx_dielectric_mean_albedo(const Ggx& ggx, float eta) {
   if (ggx.is_smooth()) return fresnel_dielectric_diffuse(eta);
   const AxisPoint a = alpha_axis(ggx), e = eta_axis(eta);
   const auto row = [&](int eta_index) { return a.mix(kDielectricMean[eta_index][a.low], kDielectricMean[eta_index][a.low + 1]); };
-  return e.mix(row(e.low), row(e.low + 1));
+  return e.mix(row(e.low), row(e.low + 1)) * (eta - 1) / (eta + 1);
 }
 
 Color ggx_schlick_albedo(const Color& f0, float cos_theta, const Ggx& ggx) {

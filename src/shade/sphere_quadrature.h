@@ -42,9 +42,9 @@ struct SquareCell {
 };
 
 /// Integral of `f(x, y)`, a glm::dvec4, over the cell: 4 x 4 Gauss-Legendre points, halved in both axes until halving changes it by less
-/// than `tolerance` or `depth` is used up.
+/// than `tolerance` or `depth` is used up; the first `forced` halvings are made in any case, lest a peak between the points be missed.
 template <class F>
-glm::dvec4 integrate_cell(const F& f, const SquareCell& cell, double tolerance, int depth) {
+glm::dvec4 integrate_cell(const F& f, const SquareCell& cell, double tolerance, int depth, int forced = 0) {
   const auto gauss = [&f](const SquareCell& c) {
     constexpr std::array<double, 4> kNode{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
     constexpr std::array<double, 4> kWeight{0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
@@ -66,7 +66,8 @@ glm::dvec4 integrate_cell(const F& f, const SquareCell& cell, double tolerance, 
     glm::dvec4 total(0);
     for (std::size_t i = 0; i < parts.size(); ++i) total += fine[i] = gauss(parts[i]);
     const glm::dvec4 change = glm::abs(total - coarse);
-    if (levels <= 1 || std::max(std::max(change.x, change.y), std::max(change.z, change.w)) < tolerance) return total;
+    if (levels <= 1 || (levels <= depth - forced && std::max(std::max(change.x, change.y), std::max(change.z, change.w)) < tolerance))
+      return total;
     total = glm::dvec4(0);
     for (std::size_t i = 0; i < parts.size(); ++i) total += self(self, parts[i], fine[i], levels - 1);
     return total;
