@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/sample/warp.h"
+#include "film/pinhole_rays.h"
 
 namespace sightline {
 namespace {
@@ -58,14 +59,31 @@ void View::ray_through(float x, float y, Vec2 lens, Vec3& origin, Vec3& directio
   direction = glm::normalize(focus - origin);
 }
 
+View::Plane View::plane() const {
+  const bool orthographic = camera_.projection == Camera::Projection::orthographic;
+  Plane plane;
+  plane.orthographic = orthographic;
+  plane.step_x = plane_step_.x * axis_x_;
+  plane.step_y = plane_step_.y * axis_y_;
+  plane.origin = plane_origin_.x * axis_x_ + plane_origin_.y * axis_y_ + (orthographic ? position_ : -axis_z_);
+  plane.position = orthographic ? glm::normalize(-axis_z_) : position_;
+  return plane;
+}
+
 void View::primary_rays(const std::uint32_t* pixels, const float* fx, const float* fy, const float* lu, const float* lv, std::size_t count,
                         const CameraRays& rays) const {
+  if (!has_lens()) {
+    const Plane p = plane();
+    PinholeRays job{p.origin, p.step_x, p.step_y, p.position, p.orthographic, static_cast<std::uint32_t>(size_px_.x), filter_.table()};
+    pinhole_rays(job, pixels, fx, fy, count, rays);
+    return;
+  }
   const std::uint32_t width = static_cast<std::uint32_t>(size_px_.x);
   for (std::size_t i = 0; i < count; ++i) {
     const float x = static_cast<float>(pixels[i] % width) + 0.5f + filter_.offset(fx[i]);
     const float y = static_cast<float>(pixels[i] / width) + 0.5f + filter_.offset(fy[i]);
     Vec3 origin, direction;
-    ray_through(x, y, has_lens() ? Vec2(lu[i], lv[i]) : Vec2(0.5f), origin, direction);
+    ray_through(x, y, Vec2(lu[i], lv[i]), origin, direction);
     rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
     rays.dx[i] = direction.x, rays.dy[i] = direction.y, rays.dz[i] = direction.z;
   }

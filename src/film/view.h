@@ -46,6 +46,12 @@ class View {
   Camera camera_;
   IVec2 size_px_;
   PixelFilter filter_;
+  struct Plane {
+    Vec3 origin, step_x, step_y, position;  ///< of perspective rays: direction = origin + x step_x + y step_y from `position`
+    bool orthographic;                      ///< then origin + x step_x + y step_y is the ray's origin and `position` its direction
+  };
+  Plane plane() const;
+
   // Picture position (x, y) maps to the image plane point base + x * step_x + y * step_y, in camera space at depth 1 (perspective) or as
   // the ray's origin (orthographic).
   Vec2 plane_origin_, plane_step_;
