@@ -22,7 +22,7 @@ nlohmann::json parse_json(const Container& container) {
     return nlohmann::json::parse(container.json.begin(), container.json.end());
   } catch (const nlohmann::json::parse_error& error) {
     throw input_error(fmt::format("malformed JSON: {}", plain_message(error.what())))
-        .at(fmt::format("byte {}", container.json_offset + error.byte));
+        .at(fmt::format("byte {}", container.json_offset + std::max<std::size_t>(error.byte, 1) - 1));
   } catch (const nlohmann::json::exception& error) {
     throw input_error(fmt::format("malformed JSON: {}", plain_message(error.what())));
   }

@@ -83,7 +83,7 @@ std::optional<std::filesystem::path> file_of_uri(std::string_view uri, const std
   const std::string decoded = decode_percent(uri);
   if (decoded.empty() || decoded.find('\0') != std::string::npos || decoded.find("://") != std::string::npos) return std::nullopt;
   const std::filesystem::path relative = std::filesystem::path(decoded).lexically_normal();
-  if (relative.is_absolute() || relative.empty() || relative.filename().empty()) return std::nullopt;
+  if (relative.is_absolute() || relative.empty() || relative.filename().empty() || relative == ".") return std::nullopt;
   if (*relative.begin() == "..") return std::nullopt;
 
   // A symbolic link inside the folder must not lead out of it either.
