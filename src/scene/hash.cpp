@@ -71,7 +71,7 @@ class Hasher {
   template <class... T>
   void add(const std::variant<T...>& value) {
     add(value.index());
-    std::visit([this](const auto& alternative) { add(alternative); }, value);
+    std::visit([&](const auto& alternative) { this->add(alternative); }, value);
   }
 
   void add(const Image& image) {
@@ -79,7 +79,7 @@ class Hasher {
     add(image.height);
     add(image.channels);
     add(image.data.index());
-    std::visit([this](const auto& pixels) { add_array(std::span(pixels)); }, image.data);
+    std::visit([&](const auto& pixels) { this->add_array(std::span(pixels)); }, image.data);
   }
   void add(const std::shared_ptr<const Image>& image) {
     add(image != nullptr);
