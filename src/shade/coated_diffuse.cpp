@@ -28,28 +28,28 @@ float CoatedDiffuse::specular_probability(float coat_reflectance_o) const {
   return total > 0 ? coat_reflectance_o / total : 0.f;
 }
 
-BsdfEval CoatedDiffuse::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
-  if (!(wo.z * wi.z > 0)) return {};
-  const float cos_o = std::fabs(wo.z), cos_i = std::fabs(wi.z);
-  const float reflected_o = coat_reflectance(cos_o);
+BsdfEval CoatedDiffuse::evaluate_upper(const Vec3& wo, const Vec3& wi, float reflected_o) const {
   const float specular = specular_probability(reflected_o);
-  const float lambert = cos_i * kInvPi;
-  BsdfEval result{base_ * ((1 - reflected_o) * (1 - coat_reflectance(cos_i)) * lambert), (1 - specular) * lambert};
-  if (!ggx_.is_smooth()) {
-    Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
-    if (m.z < 0) m = -m;
-    const float half_distribution = 0.5f * ggx_.distribution(m);
-    const float fresnel = fresnel_dielectric(std::fabs(glm::dot(wo, m)), eta_);
-    result.f_cos += Color(fresnel * half_distribution * ggx_.shadowing_over_cosine(wo, wi));
-    result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
-  }
+  const float lambert = wi.z * kInvPi;
+  BsdfEval result{base_ * ((1 - reflected_o) * (1 - coat_reflectance(wi.z)) * lambert), (1 - specular) * lambert};
+  if (ggx_.is_smooth()) return result;
+  const Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
+  const float half_distribution = 0.5f * ggx_.distribution(m);
+  result.f_cos += Color(fresnel_dielectric(glm::dot(wo, m), eta_) * half_distribution * ggx_.shadowing_over_cosine(wo, wi));
+  result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
   return result;
 }
 
-std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
+BsdfEval CoatedDiffuse::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
+  if (!(wo.z * wi.z > 0)) return {};
+  const Vec3 upper_o{wo.x, wo.y, std::fabs(wo.z)}, upper_i{wi.x, wi.y, std::fabs(wi.z)};
+  return evaluate_upper(upper_o, upper_i, coat_reflectance(upper_o.z));
+}
+
+std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode) const {
   if (wo.z == 0) return std::nullopt;
-  const float side = wo.z < 0 ? -1.f : 1.f;
-  const float reflected_o = coat_reflectance(std::fabs(wo.z));
+  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
+  const float reflected_o = coat_reflectance(upper.z);
   const float specular = specular_probability(reflected_o);
   BsdfSample s;
   if (u_lobe < specular) {
@@ -60,17 +60,16 @@ std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, co
       s.is_delta = true;
       return s;
     }
-    const Vec3 upper{wo.x, wo.y, side * wo.z};
     s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
   } else {
     s.wi = sample_cosine_hemisphere(u);
   }
   if (!(s.wi.z > 0)) return std::nullopt;
-  s.wi.z *= side;
-  const BsdfEval e = evaluate(wo, s.wi, mode);
+  const BsdfEval e = evaluate_upper(upper, s.wi, reflected_o);
   if (!(e.pdf > 0)) return std::nullopt;
   s.pdf = e.pdf;
   s.weight = e.f_cos / e.pdf;
+  if (wo.z < 0) s.wi.z = -s.wi.z;
   return s;
 }
 

@@ -25,6 +25,8 @@ class CoatedDiffuse {
  private:
   float coat_reflectance(float cos_theta) const;
   float specular_probability(float coat_reflectance_o) const;
+  /// Both on the upper side; `reflected_o` is what the coat reflects of wo.
+  BsdfEval evaluate_upper(const Vec3& wo, const Vec3& wi, float reflected_o) const;
 
   Color base_;  // reflectance / (eta² (1 - reflectance Ri))
   float eta_;

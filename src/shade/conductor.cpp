@@ -6,8 +6,8 @@ namespace sightline {
 
 BsdfEval Conductor::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
   if (ggx_.is_smooth() || !(wo.z * wi.z > 0)) return {};
-  Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
-  if (m.z < 0) m = -m;
+  // Turned over with both directions from below, which none of the terms notices.
+  const Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
   const float cosine = std::fabs(glm::dot(wo, m));
   const float half_distribution = 0.5f * ggx_.distribution(m);
   return {tint_ * fresnel_conductor(cosine, eta_, k_) * (half_distribution * ggx_.shadowing_over_cosine(wo, wi)),

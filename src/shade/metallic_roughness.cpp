@@ -31,28 +31,35 @@ float MetallicRoughness::specular_probability(const Color& specular_albedo_o) co
   return specular + diffuse > 0 ? specular / (specular + diffuse) : 0.f;
 }
 
-BsdfEval MetallicRoughness::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
-  if (!(wo.z * wi.z > 0)) return {};
-  const Color specular_o = specular_albedo(std::fabs(wo.z));
-  const float specular = specular_probability(specular_o);
-  const float cos_i = std::fabs(wi.z);
-  const float lambert = cos_i * kInvPi;
-  BsdfEval result{diffuse_ * (1.f - specular_o) * (1.f - specular_albedo(cos_i)) * lambert, (1 - specular) * lambert};
-  if (!ggx_.is_smooth()) {
-    Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
-    if (m.z < 0) m = -m;
-    const float half_distribution = 0.5f * ggx_.distribution(m);
-    result.f_cos += fresnel_schlick(f0_, std::fabs(glm::dot(wo, m))) * (half_distribution * ggx_.shadowing_over_cosine(wo, wi));
-    result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
+BsdfEval MetallicRoughness::evaluate_upper(const Vec3& wo, const Vec3& wi, const Color& specular_o) const {
+  BsdfEval result;
+  float specular = 1;
+  if (!is_black(diffuse_)) {
+    specular = specular_probability(specular_o);
+    const float lambert = wi.z * kInvPi;
+    result = {diffuse_ * (1.f - specular_o) * (1.f - specular_albedo(wi.z)) * lambert, (1 - specular) * lambert};
   }
+  if (ggx_.is_smooth()) return result;
+  const Vec3 m = normalize_or(wo + wi, Vec3(0, 0, 1));
+  const float half_distribution = 0.5f * ggx_.distribution(m);
+  result.f_cos += fresnel_schlick(f0_, glm::dot(wo, m)) * (half_distribution * ggx_.shadowing_over_cosine(wo, wi));
+  result.pdf += specular * half_distribution * ggx_.masking_over_cosine(wo);
   return result;
 }
 
-std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
+BsdfEval MetallicRoughness::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
+  if (!(wo.z * wi.z > 0)) return {};
+  const Vec3 upper_o{wo.x, wo.y, std::fabs(wo.z)}, upper_i{wi.x, wi.y, std::fabs(wi.z)};
+  return evaluate_upper(upper_o, upper_i, is_black(diffuse_) ? Color(0) : specular_albedo(upper_o.z));
+}
+
+std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode) const {
   if (wo.z == 0) return std::nullopt;
-  const float side = wo.z < 0 ? -1.f : 1.f;
-  const Color specular_o = specular_albedo(std::fabs(wo.z));
-  const float specular = specular_probability(specular_o);
+  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
+  const bool metal = is_black(diffuse_);
+  // A rough metal needs no albedo: it has but one lobe.
+  const Color specular_o = metal && !ggx_.is_smooth() ? Color(0) : specular_albedo(upper.z);
+  const float specular = metal ? 1.f : specular_probability(specular_o);
   BsdfSample s;
   if (u_lobe < specular) {
     if (ggx_.is_smooth()) {
@@ -62,17 +69,16 @@ std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe
       s.is_delta = true;
       return s;
     }
-    const Vec3 upper{wo.x, wo.y, side * wo.z};
     s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
   } else {
     s.wi = sample_cosine_hemisphere(u);
   }
   if (!(s.wi.z > 0)) return std::nullopt;
-  s.wi.z *= side;
-  const BsdfEval e = evaluate(wo, s.wi, mode);
+  const BsdfEval e = evaluate_upper(upper, s.wi, specular_o);
   if (!(e.pdf > 0)) return std::nullopt;
   s.pdf = e.pdf;
   s.weight = e.f_cos / e.pdf;
+  if (wo.z < 0) s.wi.z = -s.wi.z;
   return s;
 }
 

@@ -27,6 +27,8 @@ class MetallicRoughness {
  private:
   Color specular_albedo(float cos_theta) const;
   float specular_probability(const Color& specular_albedo_o) const;
+  /// Both on the upper side; `specular_o` is the albedo seen from wo.
+  BsdfEval evaluate_upper(const Vec3& wo, const Vec3& wi, const Color& specular_o) const;
 
   Color f0_, diffuse_;
   Ggx ggx_;

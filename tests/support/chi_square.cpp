@@ -104,8 +104,7 @@ ChiSquareResult chi_square_directions(const std::function<std::optional<Vec3>()>
                           column / static_cast<double>(grid.columns), (column + 1) / static_cast<double>(grid.columns)};
     const auto integrand = [&](double s, double turn) { return glm::dvec4(pdf(map.direction(s, turn)) * map.jacobian(s), 0, 0, 0); };
     // A cell may err by 2 % of the standard deviation of its count, which no test of this size notices.
-    // Far from a crowded axis cells are wide, and another lobe may hide in one.
-    const int forced = grid.power > 1 && 2 * row >= grid.rows ? 3 : 0;
+    const int forced = grid.far_lobe && 2 * row >= grid.rows ? 3 : 0;
     const double probability = integrate_cell(integrand, area, 0.02 / std::sqrt(static_cast<double>(count) * 100), 7, forced).x;
     expected[cell] = probability * count;
     total += probability;

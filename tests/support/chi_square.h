@@ -46,6 +46,7 @@ struct DirectionGrid {
   Vec3 axis{0, 0, 1};
   float power = 1;
   int rows = 16, columns = 16;
+  bool far_lobe = false;  ///< another narrow lobe lies far from the axis, where cells are wide: look closer there
 };
 
 /// Draws `count` directions (none: a sample without direction) and compares them with `pdf` (solid angle), integrated over each cell; what

@@ -91,6 +91,13 @@ TEST(Furnace, LosslessSurfacesReturnEverything) {
   }
 }
 
+TEST(Furnace, PhongIsNormalisedAtNormalIncidence) {
+  for (const float exponent : {0.f, 1.f, 30.f, 5000.f}) {
+    const Bsdf phong(Phong(Color(0.25f), Color(0.5f), exponent));
+    EXPECT_NEAR(integrate_directional_albedo(phong, Vec3(0, 0, 1)).total().x, 0.75f, 1e-4f) << exponent;
+  }
+}
+
 TEST(Furnace, LambertSamplesHaveNoVariance) {
   const Bsdf bsdf(Lambert{Color(1, 0.5f, 0.25f)});
   Uniform random(3);

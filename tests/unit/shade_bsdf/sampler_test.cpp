@@ -25,7 +25,7 @@ TEST(BsdfSampler, DirectionsFollowTheDensity) {
     for (const Vec3& wo : directions) {
       Uniform random(seed++);
       DirectionGrid grid;
-      if (c.narrow) grid = {Vec3(-wo.x, -wo.y, wo.z), 3, 24, 12};
+      if (c.narrow) grid = {Vec3(-wo.x, -wo.y, wo.z), 3, 24, 12, std::holds_alternative<Dielectric>(c.bsdf.model())};
       const auto result = chi_square_directions(
           [&] {
             const float u_lobe = random.next();
