@@ -31,8 +31,8 @@ class AliasTable {
   Choice sample(float u) const {
     const float n = static_cast<float>(bins_.size());
     const float scaled = u * n;
-    // u * n may round up to n.
-    const std::uint32_t bin = scaled < n ? static_cast<std::uint32_t>(scaled) : static_cast<std::uint32_t>(bins_.size()) - 1;
+    // u * n may round up to n; anything that is no number in [0,1) is taken as the end.
+    const std::uint32_t bin = scaled >= 0 && scaled < n ? static_cast<std::uint32_t>(scaled) : static_cast<std::uint32_t>(bins_.size()) - 1;
     const float rest = scaled - static_cast<float>(bin);
     const Bin& b = bins_[bin];
     const bool own = rest < b.threshold;

@@ -35,6 +35,8 @@ struct LightLists {
 
   std::uint32_t disk_begin = 0, punctual_begin = 0, directional_begin = 0, spot_begin = 0, sphere_begin = 0, environment_index = kNoLight;
   std::uint32_t size() const { return static_cast<std::uint32_t>(powers.size()); }
+  /// Whether vector code can take any choice of lights together.
+  bool is_all_one_kind() const { return disk_begin == size() || (punctual_begin == 0 && spot_begin == size()); }
 };
 
 }  // namespace sightline

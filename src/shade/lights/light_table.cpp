@@ -1,9 +1,12 @@
 #include "shade/light_table.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
+#include "shade/lights/light_kernels.h"
 #include "shade/lights/light_lists.h"
 #include "shade/lights/power_picker.h"
 #include "trace/ray_batch.h"
@@ -13,7 +16,9 @@ namespace sightline {
 
 struct LightTable::Impl {
   Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context)
-      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(texture_set) {}
+      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(texture_set) {
+    for (const FlatEmitter& emitter : lists.emitters) has_textures = has_textures || emitter.is(FlatEmitter::kTextured);
+  }
 
   /// A single light needs no random number.
   LightPicker::Pick pick(const Vec3& position, const Vec3& normal, float u) const {
@@ -21,6 +26,9 @@ struct LightTable::Impl {
     return picker.pick(position, normal, u);
   }
   LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
+  /// Vector code for lanes whose lights are of one kind that has some; returns how many lanes it did.
+  std::size_t sample_lanes(const LightLanes& lanes, std::uint32_t least, std::uint32_t greatest, std::span<const float> u0,
+                           std::span<const float> u1, std::size_t first, LightSampleBatch& samples) const;
   Color texture_of(const FlatLight& light, const Vec2& u) const {
     const FlatEmitter& emitter = lists.emitters[light.emitter];
     const Vec2 uv = lists.meshes.uv(emitter, light.primitive, flat_parameters(emitter.flags, u));
@@ -30,6 +38,7 @@ struct LightTable::Impl {
   LightLists lists;
   PowerPicker picker;
   TextureSet textures;
+  bool has_textures = false;
 };
 
 LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection, const Vec3& position, const Vec2& u) const {
@@ -59,6 +68,27 @@ LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection,
   return s;
 }
 
+std::size_t LightTable::Impl::sample_lanes(const LightLanes& lanes, std::uint32_t least, std::uint32_t greatest, std::span<const float> u0,
+                                           std::span<const float> u1, std::size_t first, LightSampleBatch& samples) const {
+  if (greatest < lists.disk_begin && lists.flats.size() <= kMaxVectorFlats) {
+    const std::size_t done = sample_flat_lanes(lanes, lists.flats.data(), lists.emitters.data(), samples, first);
+    if (!has_textures) return done;
+    for (std::size_t i = first; i < first + done; ++i) {
+      const FlatLight& light = lists.flats[samples.light[i]];
+      if (!(samples.pdf[i] > 0) || !lists.emitters[light.emitter].is(FlatEmitter::kTextured)) continue;
+      const Color texture = texture_of(light, {u0[i], u1[i]});
+      samples.radiance.x[i] *= texture.x;
+      samples.radiance.y[i] *= texture.y;
+      samples.radiance.z[i] *= texture.z;
+    }
+    return done;
+  }
+  if (least >= lists.punctual_begin && greatest < lists.spot_begin) {
+    return sample_punctual_lanes(lanes, lists.punctuals.data(), lists.punctual_begin, samples, first);
+  }
+  return 0;
+}
+
 LightTable::LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context)
     : impl_(std::make_unique<const Impl>(scene, textures, bounds, context)) {}
 LightTable::~LightTable() = default;
@@ -75,9 +105,55 @@ LightSample LightTable::sample(const Vec3& position, const Vec3& normal, float u
 void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
                         std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
   if (samples.pdf.size() < padded(count)) samples.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    samples.set(i,
-                sample({position.x[i], position.y[i], position.z[i]}, {normal.x[i], normal.y[i], normal.z[i]}, u_pick[i], {u0[i], u1[i]}));
+  const LightLists& lists = impl_->lists;
+  const auto scalar = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      samples.set(i, sample({position.x[i], position.y[i], position.z[i]}, {normal.x[i], normal.y[i], normal.z[i]},
+                            lists.size() > 1 ? u_pick[i] : 0.f, {u0[i], u1[i]}));
+    }
+  };
+  const auto lanes_from = [&](std::size_t begin, std::size_t n) {
+    LightLanes lanes{};
+    lanes.x = position.x.data() + begin;
+    lanes.y = position.y.data() + begin;
+    lanes.z = position.z.data() + begin;
+    lanes.u0 = u0.data() + begin;
+    lanes.u1 = u1.data() + begin;
+    lanes.count = n;
+    return lanes;
+  };
+  if (!impl_->picker.table().can_sample()) return scalar(0, count);
+
+  if (lists.size() == 1) {
+    LightLanes lanes = lanes_from(0, count);
+    lanes.single_selection = impl_->picker.table().probability(0);
+    return scalar(impl_->sample_lanes(lanes, 0, 0, u0, u1, 0, samples), count);
+  }
+  // Lights for a chunk of lanes, then its runs: all of it where one kind is all there is, else whole padded groups that chose one kind.
+  constexpr std::size_t kChunk = 256;
+  alignas(kCacheLine) std::array<std::uint32_t, kChunk> light;
+  alignas(kCacheLine) std::array<float, kChunk> probability;
+  const std::size_t group = lists.is_all_one_kind() ? kChunk : kLanes;
+  std::size_t begin = 0;
+  while (begin < count) {
+    const std::size_t picked =
+        pick_lights(impl_->picker.table(), u_pick.data() + begin, std::min(kChunk, count - begin), light.data(), probability.data());
+    if (picked == 0) return scalar(begin, count);
+    for (std::size_t at = 0; at < picked; at += group) {
+      const std::size_t n = std::min(group, picked - at);
+      const auto [least, greatest] =
+          std::minmax_element(light.begin() + static_cast<std::ptrdiff_t>(at), light.begin() + static_cast<std::ptrdiff_t>(at + n));
+      LightLanes lanes = lanes_from(begin + at, n);
+      lanes.light = light.data() + at;
+      lanes.selection = probability.data() + at;
+      const std::size_t done = impl_->sample_lanes(lanes, *least, *greatest, u0, u1, begin + at, samples);
+      for (std::size_t k = done; k < n; ++k) {
+        const std::size_t i = begin + at + k;
+        samples.set(i,
+                    impl_->sample_light(light[at + k], probability[at + k], {position.x[i], position.y[i], position.z[i]}, {u0[i], u1[i]}));
+      }
+    }
+    begin += picked;
   }
 }
 
