@@ -220,6 +220,13 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
 
+  CLI::App* gallery = app.add_subcommand("gallery", "pictures and what they say about themselves as one HTML page");
+  gallery->add_option("PICTURE", line.gallery.pictures, "picture files; a page of the same name (.html) beside one becomes its link")->required();
+  gallery->add_option("-o,--output", line.gallery.output, "the page (.html)")->type_name("FILE")->required();
+  gallery->add_option("--title", line.gallery.title, "heading")->type_name("TEXT");
+  gallery->add_option("--exposure", line.gallery.exposure_ev, "stops")->type_name("EV");
+  gallery->add_option("--tonemap", line.gallery.tonemap, "srgb, reinhard, aces or filmic")->type_name("NAME");
+
   CLI::App* merge = app.add_subcommand("merge", "add up sample ranges rendered apart");
   merge->add_option("SLICE", line.merge.slices, "slices of one picture")->required();
   merge->add_option("-o,--output", line.merge.outputs, "as for render; .slice joins slices")
@@ -232,7 +239,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
 
   const std::vector<std::pair<CLI::App*, CommandLine::Command>> commands = {
       {render, CommandLine::Command::render}, {compare, CommandLine::Command::compare}, {methods, CommandLine::Command::methods},
-      {info, CommandLine::Command::info},     {bench, CommandLine::Command::bench},     {merge, CommandLine::Command::merge}};
+      {info, CommandLine::Command::info},     {bench, CommandLine::Command::bench}, {gallery, CommandLine::Command::gallery},     {merge, CommandLine::Command::merge}};
   for (const auto& [sub, command] : commands) add_common(*sub, line.common);
 
   try {

@@ -61,6 +61,12 @@ struct BenchCommand {
   bool quick = false;
 };
 
+struct GalleryCommand {
+  std::vector<std::string> pictures;
+  std::string output, title = "Pictures", tonemap = "srgb";
+  float exposure_ev = 0;
+};
+
 struct MergeCommand {
   std::vector<std::string> slices, outputs;
   std::string tonemap = "srgb", stats;
@@ -68,7 +74,7 @@ struct MergeCommand {
 };
 
 struct CommandLine {
-  enum class Command { none, render, compare, methods, info, bench, merge };
+  enum class Command { none, render, compare, methods, info, bench, gallery, merge };
   Command command = Command::none;
   CommonOptions common;
   RenderCommand render;
@@ -76,6 +82,7 @@ struct CommandLine {
   MethodsCommand methods;
   InfoCommand info;
   BenchCommand bench;
+  GalleryCommand gallery;
   MergeCommand merge;
 };
 
