@@ -14,10 +14,10 @@ namespace sightline {
 /// What a batch of rays is for. A tracer picks packet width and coherence flag from a fixed table by kind (found by benchmark), never by
 /// run-time timing, so that results are repeatable.
 enum class BatchKind {
-  primary,        ///< camera rays of neighbouring pixels
-  shadow,         ///< occlusion rays from neighbouring points to near targets (one light, one origin)
-  shadow_diffuse, ///< occlusion rays without common origin or target
-  bounce,         ///< scattered rays
+  primary,         ///< camera rays of neighbouring pixels
+  shadow,          ///< occlusion rays from neighbouring points to near targets (one light, one origin)
+  shadow_diffuse,  ///< occlusion rays without common origin or target
+  bounce,          ///< scattered rays
 };
 
 /// A ray with direction of any length; t counts in units of it.

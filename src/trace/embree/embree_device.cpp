@@ -1,0 +1,81 @@
+#include "trace/embree/embree_device.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/core/error.h"
+#include "trace/embree/build_arena.h"
+
+namespace sightline {
+
+EmbreeDevice::EmbreeDevice(const std::string& isa) {
+  // Without its configuration files Embree behaves the same for every user and folder.
+  std::string settings = std::string("ignore_config_files=1") + embree_thread_setting();
+  if (!isa.empty()) settings += ",isa=" + isa;
+  device_ = rtcNewDevice(settings.c_str());
+  if (!device_) {
+    throw usage_error(fmt::format("Embree cannot be started with '{}' (error {})", settings, static_cast<int>(rtcGetDeviceError(nullptr))));
+  }
+  rtcSetDeviceErrorFunction(device_, on_error, this);
+  rtcSetDeviceMemoryMonitorFunction(device_, on_memory, this);
+  const auto has = [&](RTCDeviceProperty property) { return rtcGetDeviceProperty(device_, property) != 0; };
+  native_width_ = has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+                  : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                  : has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ? 4
+                                                                   : 1;
+}
+
+EmbreeDevice::~EmbreeDevice() { rtcReleaseDevice(device_); }
+
+bool EmbreeDevice::on_memory(void* self, ssize_t bytes, bool post) {
+  auto& device = *static_cast<EmbreeDevice*>(self);
+  const std::int64_t now = device.bytes_.fetch_add(bytes, std::memory_order_relaxed) + bytes;
+  std::int64_t peak = device.peak_bytes_.load(std::memory_order_relaxed);
+  while (now > peak && !device.peak_bytes_.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
+  }
+  // Only a request can be refused; it is then not made, and so not counted.
+  const std::int64_t budget = device.budget_bytes_.load(std::memory_order_relaxed);
+  if (post || bytes <= 0 || budget == 0 || now <= budget) return true;
+  device.bytes_.fetch_sub(bytes, std::memory_order_relaxed);
+  return false;
+}
+
+void EmbreeDevice::on_error(void* self, RTCError code, const char* text) {
+  auto& device = *static_cast<EmbreeDevice*>(self);
+  const std::lock_guard lock(device.error_mutex_);
+  if (device.error_ != RTC_ERROR_NONE) return;  // the first one says why
+  device.error_ = code;
+  device.error_text_ = text ? text : "";
+}
+
+EmbreeDevice::Build::Build(EmbreeDevice& device, const Context& context) : device_(device), context_(context), lock_(device.build_mutex_) {
+  device_.peak_bytes_.store(device_.bytes());
+  device_.budget_bytes_.store(static_cast<std::int64_t>(context.memory_budget_bytes));
+  const std::lock_guard lock(device_.error_mutex_);
+  device_.error_ = RTC_ERROR_NONE;
+}
+
+EmbreeDevice::Build::~Build() { device_.budget_bytes_.store(0); }
+
+void EmbreeDevice::Build::check() {
+  context_.check_cancelled();
+  const std::lock_guard lock(device_.error_mutex_);
+  const RTCError code = std::exchange(device_.error_, RTC_ERROR_NONE);
+  switch (code) {
+    case RTC_ERROR_NONE:
+      return;
+    case RTC_ERROR_OUT_OF_MEMORY:
+      throw resource_error(fmt::format("the acceleration structure does not fit: Embree holds {} MiB, the memory limit is {} MiB",
+                                       device_.bytes() >> 20, context_.memory_budget_bytes >> 20))
+          .remedy("raise --memory-limit or use a smaller scene");
+    case RTC_ERROR_CANCELLED:
+      throw Error(ErrorCode::interrupted, "cancelled");
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      throw usage_error("Embree does not support this CPU: " + device_.error_text_);
+    default:
+      throw Error(ErrorCode::bug, fmt::format("Embree error {}: {}", static_cast<int>(code), device_.error_text_));
+  }
+}
+
+}  // namespace sightline
