@@ -12,9 +12,9 @@
 namespace sightline {
 
 struct MetricOptions {
-  float exposure_ev = 0;              ///< for metrics taken on the tone-mapped picture
-  float pixels_per_degree = 67;       ///< for FLIP
-  std::span<const std::uint8_t> mask; ///< one byte a pixel, 0 = leave out; empty = all pixels
+  float exposure_ev = 0;               ///< for metrics taken on the tone-mapped picture
+  float pixels_per_degree = 67;        ///< for FLIP
+  std::span<const std::uint8_t> mask;  ///< one byte a pixel, 0 = leave out; empty = all pixels
 };
 
 /// A metric: its name, one line of formula, whether larger is better, and how to compute it. Pictures have equal size.
