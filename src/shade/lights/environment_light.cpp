@@ -133,9 +133,20 @@ Vec3 EnvironmentLight::sample(const Vec2& u) const {
 
 float EnvironmentLight::pdf(const Vec3& direction) const {
   if (!map_) return pdf_uniform_sphere();
-  if (!row_table_.can_sample()) return 0;
   const Vec3 local = local_from_world_ * direction;
-  const Cell cell = cell_of(environment_uv(map_->mapping(), local));
+  return pdf_at(environment_uv(map_->mapping(), local), local);
+}
+
+EnvironmentLight::Evaluation EnvironmentLight::evaluate(const Vec3& direction) const {
+  if (!map_) return {scale_, pdf_uniform_sphere()};
+  const Vec3 local = local_from_world_ * direction;
+  const Vec2 uv = environment_uv(map_->mapping(), local);
+  return {scale_ * map_->radiance_uv(uv), pdf_at(uv, local)};
+}
+
+float EnvironmentLight::pdf_at(const Vec2& uv, const Vec3& local) const {
+  if (!row_table_.can_sample()) return 0;
+  const Cell cell = cell_of(uv);
   const float probability = row_table_.probability(cell.y) * column_tables_[cell.y].probability(cell.x);
   const float width = column_border(cell.x + 1) - column_border(cell.x), height = row_border(cell.y + 1) - row_border(cell.y);
   switch (map_->mapping()) {

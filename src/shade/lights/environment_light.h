@@ -26,6 +26,12 @@ class EnvironmentLight {
   /// A unit direction in world space; the zero vector where the picture has none. Density: pdf(direction).
   Vec3 sample(const Vec2& u) const;
   float pdf(const Vec3& direction) const;
+  /// Both at once, the very same values.
+  struct Evaluation {
+    Color radiance;
+    float pdf;
+  };
+  Evaluation evaluate(const Vec3& direction) const;
   /// Integral of the radiance's luminance over all directions.
   double total_luminance() const { return total_luminance_; }
   std::uint64_t memory_bytes() const;
@@ -39,6 +45,7 @@ class EnvironmentLight {
   };
   void build(const Context& context);
   Cell cell_of(const Vec2& uv) const;
+  float pdf_at(const Vec2& uv, const Vec3& local) const;
   /// Borders of a cell in the unit square, lower then upper.
   float column_border(std::uint32_t column) const;
   float row_border(std::uint32_t row) const;

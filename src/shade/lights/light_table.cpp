@@ -55,8 +55,10 @@ LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection,
     s.light = index;
     s.wi = lists.environment->sample(u);
     s.distance = std::numeric_limits<float>::infinity();
-    s.pdf = s.wi == Vec3(0) ? 0.f : selection * lists.environment->pdf(s.wi);
-    if (s.pdf > 0) s.radiance = lists.environment->radiance(s.wi);
+    if (s.wi == Vec3(0)) return s;
+    const EnvironmentLight::Evaluation evaluation = lists.environment->evaluate(s.wi);
+    s.pdf = selection * evaluation.pdf;
+    if (s.pdf > 0) s.radiance = evaluation.radiance;
     return s;
   }
   const SphereEmitter& sphere = lists.spheres[index - lists.sphere_begin];

@@ -1,9 +1,11 @@
 // Batches give bit for bit what single calls give.
 #include <gtest/gtest.h>
 
+#include <hwy/targets.h>
+
+#include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "light_test_scene.h"
 #include "support/chi_square.h"
@@ -18,8 +20,23 @@ void expect_same_bits(float a, float b, const char* what, std::size_t lane) {
   EXPECT_EQ(std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b)) << what << " of lane " << lane << ": " << a << " " << b;
 }
 
+void check_lanes(const LightTable& table);
+
+/// On every instruction set that this machine has.
 void check_batch(const LightTable& table, const char* name) {
-  SCOPED_TRACE(name);
+  const std::int64_t supported = hwy::SupportedTargets();
+  for (const std::int64_t target : std::array<std::int64_t, 3>{HWY_AVX3, HWY_AVX2, HWY_SSSE3}) {
+    if ((supported & target) == 0) continue;
+    SCOPED_TRACE(std::string(name) + " on " + hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    check_lanes(table);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+}
+
+void check_lanes(const LightTable& table) {
   test::Uniform random(77);
   for (const std::size_t count : {1u, 16u, 37u, 1000u}) {
     Vec3Batch position, normal;
