@@ -59,23 +59,23 @@ void View::ray_through(float x, float y, Vec2 lens, Vec3& origin, Vec3& directio
   direction = glm::normalize(focus - origin);
 }
 
-View::Plane View::plane() const {
+PinholeRays View::pinhole() const {
   const bool orthographic = camera_.projection == Camera::Projection::orthographic;
-  Plane plane;
-  plane.orthographic = orthographic;
-  plane.step_x = plane_step_.x * axis_x_;
-  plane.step_y = plane_step_.y * axis_y_;
-  plane.origin = plane_origin_.x * axis_x_ + plane_origin_.y * axis_y_ + (orthographic ? position_ : -axis_z_);
-  plane.position = orthographic ? glm::normalize(-axis_z_) : position_;
-  return plane;
+  PinholeRays rays;
+  rays.orthographic = orthographic;
+  rays.step_x = plane_step_.x * axis_x_;
+  rays.step_y = plane_step_.y * axis_y_;
+  rays.origin = plane_origin_.x * axis_x_ + plane_origin_.y * axis_y_ + (orthographic ? position_ : -axis_z_);
+  rays.position = orthographic ? glm::normalize(-axis_z_) : position_;
+  rays.width = static_cast<std::uint32_t>(size_px_.x);
+  rays.filter_table = filter_.table();
+  return rays;
 }
 
 void View::primary_rays(const std::uint32_t* pixels, const float* fx, const float* fy, const float* lu, const float* lv, std::size_t count,
                         const CameraRays& rays) const {
   if (!has_lens()) {
-    const Plane p = plane();
-    PinholeRays job{p.origin, p.step_x, p.step_y, p.position, p.orthographic, static_cast<std::uint32_t>(size_px_.x), filter_.table()};
-    pinhole_rays(job, pixels, fx, fy, count, rays);
+    pinhole_rays(pinhole(), pixels, fx, fy, count, rays);
     return;
   }
   const std::uint32_t width = static_cast<std::uint32_t>(size_px_.x);

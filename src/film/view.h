@@ -16,6 +16,15 @@ struct CameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
 };
 
+/// An affine picture plane: perspective rays start at `position` towards origin + x step_x + y step_y; orthographic ones start there and
+/// go along `position`. (x, y) is in pixels from the top left corner.
+struct PinholeRays {
+  Vec3 origin, step_x, step_y, position;
+  bool orthographic;
+  std::uint32_t width;
+  const float* filter_table;  ///< PixelFilter::table()
+};
+
 /// Immutable.
 class View {
  public:
@@ -35,6 +44,9 @@ class View {
   /// The scalar definition: origin and unit direction through picture position (x, y) in pixels from the top left corner.
   void ray_through(float x, float y, Vec2 lens, Vec3& origin, Vec3& direction) const;
 
+  /// The picture plane, for loops that make rays themselves; no lens.
+  PinholeRays pinhole() const;
+
   /// Width of a pixel's ray cone: diameter at the lens, and growth per unit length on the axis.
   float cone_width() const { return cone_width_; }
   float cone_spread() const { return cone_spread_; }
@@ -46,12 +58,6 @@ class View {
   Camera camera_;
   IVec2 size_px_;
   PixelFilter filter_;
-  struct Plane {
-    Vec3 origin, step_x, step_y, position;  ///< of perspective rays: direction = origin + x step_x + y step_y from `position`
-    bool orthographic;                      ///< then origin + x step_x + y step_y is the ray's origin and `position` its direction
-  };
-  Plane plane() const;
-
   // Picture position (x, y) maps to the image plane point base + x * step_x + y * step_y, in camera space at depth 1 (perspective) or as
   // the ray's origin (orthographic).
   Vec2 plane_origin_, plane_step_;

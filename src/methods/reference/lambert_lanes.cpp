@@ -6,9 +6,11 @@
 #define HWY_TARGET_INCLUDE "methods/reference/lambert_lanes.cpp"
 #include "base/simd/targets.h"
 
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/foreach_target.h>
+
 #include <hwy/highway.h>
+
+#include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE {
