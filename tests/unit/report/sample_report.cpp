@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   } else if (kind == "throwing") {
     page = replaced(compare_report(compare_input(64, 48)), "'use strict';", "'use strict'; document.body.missing.call();");
   } else {
-    page = compare_report(compare_input(960, 600));
+    page = compare_report(compare_input(640, 400));
   }
   std::ofstream(argv[2], std::ios::binary) << page;
   return 0;
