@@ -85,6 +85,45 @@ TEST(GltfMalformed, HugeNumbersAreErrorsBeforeMemoryIsTaken) {
   }
 }
 
+TEST(GltfMalformed, AccessorsStayInsideTheirView) {
+  // The buffer goes on behind the view, so that only the view's own end can stop these.
+  const auto error_with = [](const nlohmann::json& accessor, int stride) {
+    GltfFile file;
+    const int view = file.add_view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, stride);
+    file.add_view<float>({1, 2, 3, 4, 5, 6, 7, 8, 9});
+    const int positions = file.add_accessor(view, kFloat, 3, "VEC3");
+    file.json["accessors"][positions].update(accessor);
+    file.add_root({{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
+    return error_of(file);
+  };
+  EXPECT_EQ(error_with(nlohmann::json::object(), 0), "");
+  EXPECT_EQ(error_with({{"count", 3}}, 12), "");
+  for (const std::string& error : {error_with({{"count", 4}}, 0), error_with({{"byteOffset", 4}}, 0), error_with({{"byteOffset", 37}}, 0),
+                                   error_with({{"count", 3}}, 16), error_with({{"type", "VEC3"}, {"count", 1}, {"byteOffset", 28}}, 0)}) {
+    EXPECT_TRUE(error.starts_with("test.gltf: /accessors/0: ")) << error;
+  }
+  EXPECT_TRUE(error_with({{"count", 3}}, 8).starts_with("test.gltf: /bufferViews/0/byteStride: "));
+}
+
+TEST(GltfMalformed, SparseElementsStayInsideTheirAccessor) {
+  const auto error_with = [](std::uint16_t index, int count, std::size_t values) {
+    GltfFile file;
+    const int positions = file.add_triangle_positions();
+    std::vector<float> moved(3 * values, 1);
+    file.json["accessors"][positions]["sparse"] = {
+        {"count", count},
+        {"indices", {{"bufferView", file.add_view<std::uint16_t>({0, index})}, {"componentType", kUnsignedShort}}},
+        {"values", {{"bufferView", file.add_view_bytes(std::as_bytes(std::span(moved)))}}}};
+    file.add_root({{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
+    return error_of(file);
+  };
+  EXPECT_EQ(error_with(2, 2, 2), "");
+  EXPECT_NE(error_with(3, 2, 2).find("/accessors/0/sparse/indices"), std::string::npos);
+  EXPECT_NE(error_with(2, 3, 3).find("/accessors/0/sparse/indices"), std::string::npos);
+  EXPECT_NE(error_with(2, 2, 1).find("/accessors/0/sparse/values"), std::string::npos);
+  EXPECT_NE(error_with(2, 4, 4).find("/accessors/0/sparse"), std::string::npos);
+}
+
 TEST(GltfMalformed, CountsWithoutDataAreBoundedByTheFile) {
   GltfFile file;
   file.add_root({{"mesh", file.add_mesh({{"attributes", {{"POSITION", file.add_accessor(-1, kFloat, 100'000'000, "VEC3")}}}})}});
