@@ -1,0 +1,209 @@
+#include "scene/builtin/rooms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/core/error.h"
+#include "scene/builtin/parts.h"
+#include "scene/builtin/scenes.h"
+#include "scene/builtin/subdivide.h"
+#include "scene/load/load.h"
+
+namespace sightline::builtin {
+namespace {
+
+/// A builtin scene by name, else a file: relative paths are looked up in the data directory, then in the working directory.
+Scene load_content(const std::string& spec, const LoadOptions& options, const Context& context) {
+  constexpr std::string_view kPrefix = "builtin:";
+  if (spec.starts_with(kPrefix)) return build_builtin(std::string_view(spec).substr(kPrefix.size()), options, context);
+  const std::string name = spec.substr(0, spec.find_first_of("?,"));
+  const auto& table = builtin_scenes();
+  if (std::any_of(table.begin(), table.end(), [&](const BuiltinScene& scene) { return scene.name == name; })) {
+    return build_builtin(spec, options, context);
+  }
+  const std::filesystem::path path(spec);
+  if (path.is_relative() && !options.data_directory.empty()) {
+    std::error_code ignored;
+    if (std::filesystem::exists(options.data_directory / path, ignored)) {
+      return load_scene((options.data_directory / path).string(), options, context);
+    }
+  }
+  try {
+    return load_scene(spec, options, context);
+  } catch (Error& error) {
+    if (path.is_relative() && options.data_directory.empty())
+      error.remedy("relative content is looked up in --data or SIGHTLINE_DATA, then here");
+    throw error.during("loading content");
+  }
+}
+
+/// Largest distance of a vertex from `center` in world space.
+float farthest_vertex(const Scene& scene, const Vec3& center) {
+  float farthest = 0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh.index];
+    const auto look = [&](std::span<const Vec3> positions) {
+      for (const Vec3& p : positions) {
+        const float d = length_squared(transform_point(instance.world_from_object, p) - center);
+        if (d > farthest) farthest = d;
+      }
+    };
+    if (mesh.source) {
+      MeshChunk chunk;
+      for (mesh.source->restart(); mesh.source->next(chunk);) look(chunk.positions);
+      mesh.source->restart();
+    } else {
+      look(mesh.positions.span());
+    }
+  }
+  farthest = std::sqrt(farthest);
+  for (const Sphere& sphere : scene.spheres) farthest = std::fmax(farthest, glm::length(sphere.center - center) + sphere.radius);
+  return farthest;
+}
+
+/// Geometry only, as it stands at time 0.
+Scene frozen(Scene scene) {
+  scene = pose(std::move(scene), 0);
+  scene.cameras.clear();
+  scene.lights.clear();
+  scene.environment.reset();
+  scene.hints = {};
+  scene.framing.reset();
+  scene.nodes.clear();
+  scene.animation_duration_s = 0;
+  for (Instance& instance : scene.instances) instance.node = {};
+  return scene;
+}
+
+struct RoomSettings {
+  std::string content = "hairball";
+  template <class Visitor>
+  static void describe(Visitor&& visit) {
+    visit("content", &RoomSettings::content, {.help = "scene file (relative to the data directory) or builtin scene to put in the room"});
+  }
+};
+
+Scene build_room(const RoomSettings& s, const LoadOptions& options, const Context& context) {
+  return place_in_room(load_content(s.content, options, context), false);
+}
+Scene build_open_room(const RoomSettings& s, const LoadOptions& options, const Context& context) {
+  return place_in_room(load_content(s.content, options, context), true);
+}
+
+struct GroundSettings {
+  std::string content = "hairball";
+  std::uint64_t min_vertices = 0;
+  template <class Visitor>
+  static void describe(Visitor&& visit) {
+    visit("content", &GroundSettings::content,
+          {.help = "scene file (relative to the data directory) or builtin scene to put on the ground"});
+    visit("min_vertices", &GroundSettings::min_vertices,
+          {.help = "split every triangle in four until the content has this many vertices", .minimum = 0, .maximum = 1e8});
+  }
+};
+
+/// A square of 200 x 200 vertices over four bounding radii, centred below the content.
+Mesh ground_mesh(const Vec3& center, float edge) {
+  constexpr std::uint32_t kSide = 200;
+  std::vector<Vec3> positions;
+  std::vector<UVec3> triangles;
+  for (std::uint32_t j = 0; j < kSide; ++j) {
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      const float u = static_cast<float>(i) / (kSide - 1) - 0.5f, v = static_cast<float>(j) / (kSide - 1) - 0.5f;
+      positions.push_back(center + edge * Vec3(u, 0, v));
+    }
+  }
+  for (std::uint32_t j = 0; j + 1 < kSide; ++j) {
+    for (std::uint32_t i = 0; i + 1 < kSide; ++i) {
+      const std::uint32_t a = j * kSide + i, b = a + 1, c = a + kSide, d = c + 1;
+      triangles.insert(triangles.end(), {{a, c, b}, {b, c, d}});
+    }
+  }
+  Mesh mesh;
+  mesh.name = "ground";
+  mesh.positions = SharedArray<Vec3>(positions);
+  mesh.triangles = SharedArray<UVec3>(triangles);
+  for (const Vec3& p : positions) mesh.bounds.add(p);
+  return mesh;
+}
+
+Scene build_ground(const GroundSettings& s, const LoadOptions& options, const Context& context) {
+  Scene scene = frozen(load_content(s.content, options, context));
+  subdivide(scene, s.min_vertices, context);
+  const Bounds bounds = scene_bounds(scene);
+  if (bounds.is_empty()) throw input_error("the content has no geometry");
+  const Vec3 center = bounds.center();
+  const float radius = farthest_vertex(scene, center);
+  add_mesh(scene, ground_mesh({center.x, bounds.lower.y, center.z}, 4 * radius), add_diffuse(scene, "ground", Color(0.5f)));
+  scene.framing = bounds;
+  scene.cameras.push_back(framing_camera(bounds));
+  scene.hints.size_px = IVec2(800, 600);
+  return scene;
+}
+
+}  // namespace
+
+Scene place_in_room(Scene content, bool open) {
+  Scene scene = frozen(std::move(content));
+  const Bounds bounds = scene_bounds(scene);
+  if (bounds.is_empty()) throw input_error("the content has no geometry");
+  const Vec3 center = bounds.center();
+  const float radius = farthest_vertex(scene, center);
+  const float scale = radius > 0 ? 1 / radius : 1;
+
+  // Content: one material for all, scaled, moved onto the floor.
+  const Mat4 place(Vec4(scale, 0, 0, 0), Vec4(0, scale, 0, 0), Vec4(0, 0, scale, 0),
+                   Vec4(-scale * center.x, -scale * bounds.lower.y, -scale * center.z, 1));
+  scene.materials.clear();
+  scene.textures.clear();
+  scene.images.clear();
+  scene.media.clear();
+  const MaterialId grey = add_diffuse(scene, "grey", Color(0.7f));
+  for (Mesh& mesh : scene.meshes) {
+    mesh.materials = {grey};
+    mesh.triangle_materials = {};
+  }
+  for (Instance& instance : scene.instances) {
+    instance.world_from_object = place * instance.world_from_object;
+    instance.material_override = grey;  // chunks of a source may name materials of their own
+  }
+  for (Sphere& sphere : scene.spheres) {
+    sphere.center = transform_point(place, sphere.center);
+    sphere.radius *= scale;
+    sphere.reverse_orientation = false;
+    sphere.material = grey;
+  }
+
+  // The room: x, z in [-2.5, 2.5], y in [0, 4], seen from inside.
+  const Vec3 x(5, 0, 0), y(0, 4, 0), z(0, 0, 5);
+  MeshBuilder walls;
+  walls.quad({-2.5f, 0, -2.5f}, z, x);  // floor
+  walls.quad({-2.5f, 0, -2.5f}, x, y);  // back
+  walls.quad({-2.5f, 0, -2.5f}, y, z);  // left
+  walls.quad({2.5f, 0, -2.5f}, z, y);   // right
+  if (!open) {
+    walls.quad({-2.5f, 4, -2.5f}, x, z);  // ceiling
+    walls.quad({-2.5f, 0, 2.5f}, y, x);   // front
+  }
+  add_mesh(scene, walls.build("room"), grey);
+  if (!open) {
+    const MaterialId light = add_emitter(scene, "light", Color(40));
+    add_mesh(scene, MeshBuilder().quad({-0.5f, 3.99f, -0.5f}, {1, 0, 0}, {0, 0, 1}).build("light"), light);
+  }
+  add_camera(scene, {1.6f, 1.5f, 2.2f}, {0, 0.8f, 0}, 50);
+  scene.hints.size_px = IVec2(1280, 960);
+  return scene;
+}
+
+BuiltinScene room_scene() { return declare<RoomSettings, build_room>("room", "content in a closed room below a square light"); }
+BuiltinScene open_room_scene() {
+  return declare<RoomSettings, build_open_room>("open-room",
+                                                "content in a room without ceiling, front wall and light: give it an environment");
+}
+BuiltinScene ground_scene() {
+  return declare<GroundSettings, build_ground>("ground", "content on a ground, framed: give it an environment");
+}
+
+}  // namespace sightline::builtin
