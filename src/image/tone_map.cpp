@@ -62,13 +62,12 @@ float srgb_from_linear(float value) { return value <= 0.0031308f ? 12.92f * valu
 
 float linear_from_srgb(float value) { return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f); }
 
+float tone_curve(float linear, ToneMap curve) { return std::clamp(apply(displayable(linear), curve), 0.0f, 1.0f); }
+
 Color tone_map(const Color& linear, ToneMap curve, float exposure_ev) {
   const float scale = std::exp2(exposure_ev);
   Color result;
-  for (int c = 0; c < 3; ++c) {
-    const float exposed = displayable(linear[c] * scale);
-    result[c] = srgb_from_linear(std::clamp(apply(exposed, curve), 0.0f, 1.0f));
-  }
+  for (int c = 0; c < 3; ++c) result[c] = srgb_from_linear(tone_curve(linear[c] * scale, curve));
   return result;
 }
 

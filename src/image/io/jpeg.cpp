@@ -157,8 +157,9 @@ Image parse_jpeg(std::span<const std::byte> bytes) {
   Decoder decoder;
   const auto failure = [&decoder] { return input_error(std::string("damaged JPEG: ") + decoder.message()); };
   if (!decoder.read_header(bytes)) throw failure();
-  // A block of 64 values takes two bits at the least in a sequential file; a progressive one can send blocks with one.
-  constexpr double expansion = 512;
+  // A block of 64 values takes two bits at the least in a sequential file, and with halved chroma that is 1 : 512; progressive files can
+  // do with half of it.
+  constexpr double expansion = 1024;
   check_picture_size(decoder.width(), decoder.height(), static_cast<std::size_t>(decoder.components()), bytes.size(), expansion);
   if (!decoder.start()) throw failure();
 

@@ -13,11 +13,11 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-/// The colour of an EXR file: R G B (A), else Y (A), else its only channel.
+/// The colour of an EXR file: R G B (A), else Y (A), else its only channel. Of R, G and B some may be missing: they are 0, as in OpenEXR.
 Image color_from_layers(const LayeredImage& layers) {
   std::vector<const Channel*> chosen;
   const Channel *r = layers.find("R"), *g = layers.find("G"), *b = layers.find("B"), *y = layers.find("Y"), *a = layers.find("A");
-  if (r && g && b) {
+  if (r || g || b) {
     chosen = {r, g, b};
     if (a) chosen.push_back(a);
   } else if (y && a) {
@@ -41,6 +41,7 @@ Image color_from_layers(const LayeredImage& layers) {
   Image image{layers.width, layers.height, static_cast<int>(chosen.size()), {}};
   Image::Floats values(image.pixel_count() * chosen.size());
   for (std::size_t c = 0; c < chosen.size(); ++c) {
+    if (!chosen[c]) continue;
     const std::vector<float>& source = chosen[c]->values;
     for (std::size_t i = 0; i < source.size(); ++i) values[i * chosen.size() + c] = source[i];
   }
