@@ -16,6 +16,9 @@ namespace sightline {
 struct WorldOptions {
   enum class Backend { embree, brute } backend = Backend::embree;
   TracerOptions tracer;
+  /// Fills SurfaceBatch::shadow_offset. Off by default: the offset trades the facets' true shadows for smooth ones, and the reference shows
+  /// the scene as it is.
+  bool shadow_terminator = false;
 };
 
 /// Immutable; safe to share between threads. Keeps its Scene.

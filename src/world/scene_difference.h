@@ -1,0 +1,15 @@
+// What an edit left alone.
+#pragma once
+
+#include "base/math/bounds.h"
+#include "scene/scene.h"
+
+namespace sightline {
+
+/// Whether both scenes have equal texture nodes on the same images, so that one TextureSet serves both.
+bool same_textures(const Scene& a, const Scene& b);
+
+/// Whether one LightTable serves both scenes (given that their textures are the same). May say no where it could say yes.
+bool same_lights(const Scene& a, const Scene& b, const Bounds& bounds_a, const Bounds& bounds_b);
+
+}  // namespace sightline
