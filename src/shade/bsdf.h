@@ -21,7 +21,7 @@ class Bsdf {
   using Model = std::variant<Lambert, MetallicRoughness, Conductor, Dielectric, CoatedDiffuse, Phong, DiffuseTransmission>;
 
   Bsdf() = default;
-  explicit Bsdf(Model model) : model_(std::move(model)) {}
+  explicit Bsdf(const Model& model) : model_(model) {}
 
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const {
     return std::visit([&](const auto& m) { return m.evaluate(wo, wi, mode); }, model_);

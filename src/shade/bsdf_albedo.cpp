@@ -8,7 +8,7 @@ namespace sightline {
 
 namespace {
 
-constexpr int kLobeProbes = 1024;
+constexpr int kColumns = 16, kLobeProbes = 1024;
 
 /// What a few samples tell: delta parts, and around which direction transmitted light gathers.
 struct Probe {
@@ -18,8 +18,8 @@ struct Probe {
   Probe(const Bsdf& bsdf, const Vec3& wo, TransportMode mode) {
     Vec3 sum(0);
     for (int i = 0; i < kLobeProbes; ++i) {
-      const float turn = (static_cast<float>(i) + 0.5f) * (1.f / 64);
-      const Vec2 u{turn - std::floor(turn), (static_cast<float>(i / 64) + 0.5f) * (64.f / kLobeProbes)};
+      const Vec2 u{(static_cast<float>(i % kColumns) + 0.5f) / kColumns,
+                   (static_cast<float>(i / kColumns % kColumns) + 0.5f) / kColumns};  // NOLINT(bugprone-integer-division): the row
       const auto s = bsdf.sample(wo, (static_cast<float>(i) + 0.5f) / kLobeProbes, u, mode);
       if (!s) continue;
       // A delta part is one direction, so that weight times probability is all of it.

@@ -8,8 +8,8 @@
 
 namespace sightline {
 
-/// Reflects on both sides. Single scattering only: a rough white conductor of alpha 1 loses about half of its energy at normal incidence
-/// to the second and later bounces between micro-facets.
+/// Reflects on both sides. Single scattering only: light that a second micro-facet would have returned is lost. At normal incidence a white
+/// conductor keeps 99 % for alpha 0.1, 92 % for 0.25, 69 % for 0.5 and 31 % for 1.
 class Conductor {
  public:
   Conductor() = default;

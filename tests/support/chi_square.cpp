@@ -86,14 +86,14 @@ ChiSquareResult chi_square(std::span<const double> observed, std::span<const dou
 ChiSquareResult chi_square_directions(const std::function<std::optional<Vec3>()>& sample, const std::function<double(const Vec3&)>& pdf,
                                       const DirectionGrid& grid, int count) {
   const PolarMap map(grid.axis, grid.power);
-  const auto cell_count = static_cast<std::size_t>(grid.rows * grid.columns);
+  const auto rows = static_cast<std::size_t>(grid.rows), columns = static_cast<std::size_t>(grid.columns), cell_count = rows * columns;
   std::vector<double> observed(cell_count + 1, 0), expected(cell_count + 1, 0);
   for (int i = 0; i < count; ++i) {
     std::size_t cell = cell_count;
     if (const auto direction = sample()) {
       const Vec2 place = map.invert(*direction);
-      cell = static_cast<std::size_t>(static_cast<int>(place.x * static_cast<float>(grid.rows)) * grid.columns +
-                                      static_cast<int>(place.y * static_cast<float>(grid.columns)));
+      cell = static_cast<std::size_t>(place.x * static_cast<float>(rows)) * columns +
+             static_cast<std::size_t>(place.y * static_cast<float>(columns));
     }
     observed[cell] += 1;
   }

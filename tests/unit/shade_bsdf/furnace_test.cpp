@@ -98,6 +98,22 @@ TEST(Furnace, PhongIsNormalisedAtNormalIncidence) {
   }
 }
 
+TEST(Furnace, SingleScatteringLosesWhatTheHeadersSay) {
+  const auto kept = [](const Bsdf::Model& model, float cos_theta) {
+    return integrate_directional_albedo(Bsdf(model), Vec3(0, 0, cos_theta), TransportMode::importance).total().x;
+  };
+  const auto conductor = [](float alpha) { return Conductor(Color(0), Color(1), Color(1), Ggx(alpha, alpha)); };
+  const auto glass = [](float alpha) { return Dielectric(1.5f, Ggx(alpha, alpha), false); };
+  EXPECT_NEAR(kept(conductor(0.1f), 1), 0.99f, 5e-3f);
+  EXPECT_NEAR(kept(conductor(0.25f), 1), 0.92f, 5e-3f);
+  EXPECT_NEAR(kept(conductor(0.5f), 1), 0.69f, 5e-3f);
+  EXPECT_NEAR(kept(conductor(1), 1), 0.31f, 5e-3f);
+  EXPECT_NEAR(kept(glass(0.25f), 1), 0.99f, 5e-3f);
+  EXPECT_NEAR(kept(glass(0.25f), -1), 0.93f, 5e-3f);
+  EXPECT_NEAR(kept(glass(0.5f), 1), 0.97f, 5e-3f);
+  EXPECT_NEAR(kept(glass(0.5f), -1), 0.75f, 5e-3f);
+}
+
 TEST(Furnace, LambertSamplesHaveNoVariance) {
   const Bsdf bsdf(Lambert{Color(1, 0.5f, 0.25f)});
   Uniform random(3);

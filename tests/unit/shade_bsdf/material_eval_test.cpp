@@ -10,9 +10,9 @@
 namespace sightline::test {
 namespace {
 
-MaterialId add(Scene& scene, SurfaceModel model) {
+MaterialId add(Scene& scene, const SurfaceModel& model) {
   Material material;
-  material.model = std::move(model);
+  material.model = model;
   scene.materials.push_back(std::move(material));
   return MaterialId(scene.materials.size() - 1);
 }
@@ -56,7 +56,7 @@ TEST(MaterialEval, NoMaterialIsLambertSeventyPercent) {
 TEST(MaterialEval, EachModelBecomesItsBsdf) {
   Scene scene;
   const TextureSet textures;
-  const auto made = [&](SurfaceModel model) { return make_bsdf(scene, textures, add(scene, std::move(model)), kMiddle, 0.5f).model(); };
+  const auto made = [&](const SurfaceModel& model) { return make_bsdf(scene, textures, add(scene, model), kMiddle, 0.5f).model(); };
   EXPECT_TRUE(std::holds_alternative<Lambert>(made(DiffuseMaterial{})));
   EXPECT_TRUE(std::holds_alternative<MetallicRoughness>(made(MetallicRoughnessMaterial{})));
   EXPECT_TRUE(std::holds_alternative<Conductor>(made(ConductorMaterial{})));

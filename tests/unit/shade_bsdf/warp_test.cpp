@@ -14,8 +14,12 @@ namespace {
 constexpr int kSamples = 50000;
 constexpr double kSignificance = 1e-3;
 
+std::size_t cell_index(int row, int column, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
+
 template <class Sample, class Pdf>
-void expect_directions_follow(const char* what, Sample&& sample, Pdf&& pdf, const DirectionGrid& grid = {}) {
+void expect_directions_follow(const char* what, const Sample& sample, const Pdf& pdf, const DirectionGrid& grid = {}) {
   Uniform random(42);
   const auto result = chi_square_directions([&] { return std::optional<Vec3>(sample(random.next2())); },
                                             [&](const Vec3& w) { return static_cast<double>(pdf(w)); }, grid, kSamples);
@@ -23,7 +27,7 @@ void expect_directions_follow(const char* what, Sample&& sample, Pdf&& pdf, cons
 }
 
 template <class Warp, class Inverse>
-void expect_inverse(const char* what, Warp&& warp, Inverse&& inverse, float tolerance = 2e-4f) {
+void expect_inverse(const char* what, const Warp& warp, const Inverse& inverse, float tolerance = 2e-4f) {
   Uniform random(43);
   for (int i = 0; i < 2000; ++i) {
     // Away from the seams of the azimuth and from points that all of an edge maps to.
@@ -41,8 +45,7 @@ TEST(Warp, ConcentricDiskIsUniform) {
     const Vec2 p = sample_concentric_disk(random.next2());
     const float radius2 = std::min(glm::dot(p, p), kOneMinusEpsilon);  // equal steps of r² are equal areas
     ASSERT_LE(glm::dot(p, p), 1 + 1e-6f);
-    observed[static_cast<std::size_t>(static_cast<int>(radius2 * kRings) * kSectors +
-                                      static_cast<int>(azimuth_turn(p.x, p.y) * kSectors))] += 1;
+    observed[cell_index(static_cast<int>(radius2 * kRings), static_cast<int>(azimuth_turn(p.x, p.y) * kSectors), kSectors)] += 1;
   }
   for (double& e : expected) e = kSamples * static_cast<double>(pdf_concentric_disk()) * std::numbers::pi / (kRings * kSectors);
   const auto result = chi_square(observed, expected);
@@ -62,13 +65,14 @@ TEST(Warp, TriangleIsUniform) {
     ASSERT_LE(b.x + b.y, 1 + 1e-6f);
     const int x = std::min(static_cast<int>(b.x * kSteps), kSteps - 1), y = std::min(static_cast<int>(b.y * kSteps), kSteps - 1);
     const bool inverted = b.x * kSteps - static_cast<float>(x) + b.y * kSteps - static_cast<float>(y) > 1;
-    observed[static_cast<std::size_t>((x * kSteps + y) * 2 + inverted)] += 1;
+    observed[cell_index(x * kSteps + y, inverted ? 1 : 0, 2)] += 1;
   }
   for (int x = 0; x < kSteps; ++x)
     for (int y = 0; x + y < kSteps; ++y)
-      for (int inverted = 0; inverted <= (x + y < kSteps - 1 ? 1 : 0); ++inverted)
-        expected[static_cast<std::size_t>((x * kSteps + y) * 2 + inverted)] =
-            kSamples * static_cast<double>(pdf_uniform_triangle()) / (2.0 * kSteps * kSteps);
+      for (const bool inverted : {false, true})
+        if (!inverted || x + y < kSteps - 1)
+          expected[cell_index(x * kSteps + y, inverted ? 1 : 0, 2)] =
+              kSamples * static_cast<double>(pdf_uniform_triangle()) / (2.0 * kSteps * kSteps);
   // A point within rounding of the long edge may fall into a cell that lies beyond it.
   for (std::size_t i = 0; i < expected.size(); ++i)
     if (expected[i] == 0 && observed[i] <= 1) observed[i] = 0;
@@ -130,15 +134,15 @@ TEST(Warp, GgxVisibleNormalsAreProjectedOntoOneUnitOfArea) {
     for (const float cosine : {1.f, 0.5f, 0.05f}) {
       const Vec3 wo = direction_at(cosine, 0);
       double sum = 0;
-      constexpr int kSteps = 1000;
+      constexpr int kSteps = 1000, kTurns = 250;
       for (int i = 0; i < kSteps; ++i) {
-        for (int j = 0; j < kSteps / 4; ++j) {
+        for (int j = 0; j < kTurns; ++j) {
           // Slopes r cos(phi), r sin(phi), r = alpha s / (1 - s).
-          const double s = (i + 0.5) / kSteps, phi = 2 * std::numbers::pi * (j + 0.5) / (kSteps / 4);
+          const double s = (i + 0.5) / kSteps, phi = 2 * std::numbers::pi * (j + 0.5) / kTurns;
           const double r = alpha * s / (1 - s), dr = alpha / ((1 - s) * (1 - s)) / kSteps;
           const double z = 1 / std::sqrt(1 + r * r);
           const Vec3 m(static_cast<float>(r * z * std::cos(phi)), static_cast<float>(r * z * std::sin(phi)), static_cast<float>(z));
-          const double solid_angle = r * z * z * z * dr * 2 * std::numbers::pi / (kSteps / 4);
+          const double solid_angle = r * z * z * z * dr * 2 * std::numbers::pi / kTurns;
           sum += pdf_ggx_visible_normal(wo, Vec2(alpha), m) * solid_angle;
         }
       }
