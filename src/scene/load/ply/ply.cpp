@@ -10,6 +10,7 @@
 #include "scene/load/ply/body.h"
 #include "scene/load/ply/byte_stream.h"
 #include "scene/load/ply/header.h"
+#include "scene/load/ply/repair_normals.h"
 #include "scene/load/warnings.h"
 #include "scene/materialize.h"
 
@@ -73,22 +74,6 @@ void replace_non_finite(std::span<Vec3> positions, const Bounds& bounds) {
   const Vec3 inside = bounds.is_empty() ? Vec3(0) : bounds.lower;
   for (Vec3& p : positions) {
     if (!is_finite(p)) p = inside;
-  }
-}
-
-/// Zero normals become the area-weighted mean of the triangles around their vertex.
-void repair_normals(std::span<Vec3> normals, std::span<const Vec3> positions, std::span<const UVec3> triangles) {
-  std::vector<bool> bad(normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i) bad[i] = normals[i] == Vec3(0);
-  for (const UVec3& t : triangles) {
-    if (!bad[t.x] && !bad[t.y] && !bad[t.z]) continue;
-    const Vec3 weighted = glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
-    for (int k = 0; k < 3; ++k) {
-      if (bad[t[k]] && is_finite(weighted)) normals[t[k]] += weighted;
-    }
-  }
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (bad[i]) normals[i] = normalize_or(normals[i], Vec3(0, 1, 0));
   }
 }
 
