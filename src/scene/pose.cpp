@@ -22,7 +22,7 @@ Segment find_segment(const std::vector<float>& times_s, float time_s) {
   return {first, (time_s - times_s[first]) / duration_s, duration_s};
 }
 
-/// Cubic Hermite spline over one segment [glTF2, Appendix C.4]: stored tangents are per second, hence the factor of its duration.
+/// Cubic Hermite spline over one segment [glTF2, Appendix C]: stored tangents are per second, hence the factor of its duration.
 Vec4 cubic_spline(const Track& track, const Segment& segment) {
   const std::size_t k = 3 * segment.first;
   const Vec4 p0 = track.values[k + 1];

@@ -69,7 +69,7 @@ void MeshImporter::add_primitive(const JsonView& primitive, const std::string& n
     check_count(data.array.size(), mesh, *attribute);
     mesh.normals = data.array;
     has_broken_normals = data.has_broken;
-    // Without normals a mesh is flat shaded and its tangents mean nothing [glTF2, §3.7.2.1].
+    // Without normals a mesh is flat shaded and its tangents mean nothing [glTF2, §3.7.2].
     if (const std::optional<JsonView> tangent = attributes.find("TANGENT")) {
       mesh.tangents = tangents(import_.document.resolve("accessors", *tangent));
       check_count(mesh.tangents.size(), mesh, *tangent);

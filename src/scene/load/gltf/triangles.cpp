@@ -12,7 +12,7 @@ std::vector<UVec3> assemble(std::uint64_t mode, std::size_t vertex_count, const 
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     switch (mode) {
       case kTriangleStrip:
-        // Every other triangle is turned, so that all face the same way [glTF2, §3.7.2.1].
+        // Every other triangle is turned, so that all face the same way [glTF2, §3.7.2].
         triangles[i] = {corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2)};
         break;
       case kTriangleFan:
