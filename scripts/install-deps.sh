@@ -15,7 +15,7 @@ build_packages=(
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                   # text in and out
   libzstd-dev libxxhash-dev                                                  # compression, hashing
 )
-test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev chromium nodejs)
+test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev chromium)
 check_packages=(clang-19 clang-tidy-19 clang-format-19 libclang-rt-19-dev git)
 
 mode=all
@@ -30,11 +30,7 @@ for argument in "$@"; do
 done
 
 packages=("${build_packages[@]}")
-if [[ $mode == all ]]; then
-  packages+=("${test_packages[@]}" "${check_packages[@]}")
-  # The node packages of other vendors bring npm themselves and conflict with Debian's.
-  command -v npm >/dev/null || packages+=(npm)
-fi
+if [[ $mode == all ]]; then packages+=("${test_packages[@]}" "${check_packages[@]}"); fi
 if $list; then
   printf '%s\n' "${packages[@]}"
   exit 0
