@@ -38,7 +38,9 @@ struct LightSampleBatch {
   AlignedVector<std::uint8_t> is_delta, is_mesh;
   AlignedVector<std::uint32_t> light;
   void resize(std::size_t n);
-  void set(std::size_t i, const LightSample& sample);
+  /// Writes samples from index `first` on. Whole groups of kLanes are kind to the cache: single lanes of twenty arrays that happen to lie a
+  /// multiple of 4 KiB apart would throw each other out.
+  void set(std::size_t first, std::span<const LightSample> samples);
 };
 
 /// How a light is chosen for a shading point: an interface, so that smarter choices can replace choice by power.
@@ -63,7 +65,8 @@ class LightTable {
 
   std::size_t size() const;  ///< entries, environment included
   bool has_environment() const;
-  /// Chooses a light by `u_pick` (not read if there is only one) and a point on it by `u`. pdf 0 where the light cannot reach `position`. `normal` = 0 allowed.
+  /// Chooses a light by `u_pick` (not read if there is only one) and a point on it by `u`. pdf 0 where the light cannot reach `position`.
+  /// `normal` = 0 allowed.
   LightSample sample(const Vec3& position, const Vec3& normal, float u_pick, const Vec2& u) const;
   /// The same for many points; random numbers as arrays (`u_pick` may hold anything if there is only one light). Grows `samples` if needed.
   /// On every SIMD target bit for bit what the single call gives.

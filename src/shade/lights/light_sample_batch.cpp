@@ -10,22 +10,25 @@ void LightSampleBatch::resize(std::size_t n) {
   light.resize(padded(n));
 }
 
-void LightSampleBatch::set(std::size_t i, const LightSample& s) {
-  const auto put = [i](Vec3Batch& batch, const Vec3& v) {
-    batch.x[i] = v.x;
-    batch.y[i] = v.y;
-    batch.z[i] = v.z;
+void LightSampleBatch::set(std::size_t first, std::span<const LightSample> samples) {
+  const auto put = [&](auto& array, auto&& value) {
+    for (std::size_t i = 0; i < samples.size(); ++i) array[first + i] = value(samples[i]);
   };
-  put(wi, s.wi);
-  put(point, s.point);
-  put(normal, s.normal);
-  put(radiance, s.radiance);
-  distance[i] = s.distance;
-  point_error[i] = s.point_error;
-  pdf[i] = s.pdf;
-  is_delta[i] = s.is_delta ? 1 : 0;
-  is_mesh[i] = s.is_mesh ? 1 : 0;
-  light[i] = s.light;
+  const auto put3 = [&](Vec3Batch& batch, Vec3 LightSample::* member) {
+    put(batch.x, [&](const LightSample& s) { return (s.*member).x; });
+    put(batch.y, [&](const LightSample& s) { return (s.*member).y; });
+    put(batch.z, [&](const LightSample& s) { return (s.*member).z; });
+  };
+  put3(wi, &LightSample::wi);
+  put3(point, &LightSample::point);
+  put3(normal, &LightSample::normal);
+  put3(radiance, &LightSample::radiance);
+  put(distance, [](const LightSample& s) { return s.distance; });
+  put(point_error, [](const LightSample& s) { return s.point_error; });
+  put(pdf, [](const LightSample& s) { return s.pdf; });
+  put(is_delta, [](const LightSample& s) { return static_cast<std::uint8_t>(s.is_delta); });
+  put(is_mesh, [](const LightSample& s) { return static_cast<std::uint8_t>(s.is_mesh); });
+  put(light, [](const LightSample& s) { return s.light; });
 }
 
 }  // namespace sightline

@@ -108,11 +108,21 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
                         std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
   if (samples.pdf.size() < padded(count)) samples.resize(count);
   const LightLists& lists = impl_->lists;
-  const auto scalar = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      samples.set(i, sample({position.x[i], position.y[i], position.z[i]}, {normal.x[i], normal.y[i], normal.z[i]},
-                            lists.size() > 1 ? u_pick[i] : 0.f, {u0[i], u1[i]}));
+  // One sample after the other where there is no vector code: `draw(i)` for lanes [begin, end).
+  const auto one_by_one = [&](std::size_t begin, std::size_t end, auto&& draw) {
+    std::array<LightSample, kLanes> drawn;
+    while (begin < end) {
+      const std::size_t n = std::min(kLanes, end - begin);
+      for (std::size_t k = 0; k < n; ++k) drawn[k] = draw(begin + k);
+      samples.set(begin, std::span(drawn.data(), n));
+      begin += n;
     }
+  };
+  const auto place = [&](std::size_t i) { return Vec3(position.x[i], position.y[i], position.z[i]); };
+  const auto scalar = [&](std::size_t begin, std::size_t end) {
+    one_by_one(begin, end, [&](std::size_t i) {
+      return sample(place(i), {normal.x[i], normal.y[i], normal.z[i]}, lists.size() > 1 ? u_pick[i] : 0.f, {u0[i], u1[i]});
+    });
   };
   const auto lanes_from = [&](std::size_t begin, std::size_t n) {
     LightLanes lanes{};
@@ -149,11 +159,9 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
       lanes.light = light.data() + at;
       lanes.selection = probability.data() + at;
       const std::size_t done = impl_->sample_lanes(lanes, *least, *greatest, u0, u1, begin + at, samples);
-      for (std::size_t k = done; k < n; ++k) {
-        const std::size_t i = begin + at + k;
-        samples.set(i,
-                    impl_->sample_light(light[at + k], probability[at + k], {position.x[i], position.y[i], position.z[i]}, {u0[i], u1[i]}));
-      }
+      const std::size_t first = begin + at;
+      one_by_one(first + done, first + n,
+                 [&](std::size_t i) { return impl_->sample_light(light[i - begin], probability[i - begin], place(i), {u0[i], u1[i]}); });
     }
     begin += picked;
   }
