@@ -1,5 +1,5 @@
 // EXR files: magic number, version and flags, then headers of attributes (name, type, size, value), each ended by an empty name; files
-// with several parts have one more empty header [OpenEXR, "OpenEXR File Layout"].
+// with several parts have one more empty header (the OpenEXR project's page "OpenEXR File Layout").
 #include "image/io/exr_header.h"
 
 #include <algorithm>

@@ -127,10 +127,14 @@ void rgb_from_inverted_inks(const std::uint8_t* inks, std::uint8_t* rgb, std::si
   }
 }
 
-bool encode_rows(jpeg_compress_struct& codec, ErrorManager& errors, const std::uint8_t* rgb, int quality, unsigned char** target,
-                 unsigned long* size) {
+bool encode_rows(jpeg_compress_struct& codec, ErrorManager& errors, int width, int height, const std::uint8_t* rgb, int quality,
+                 unsigned char** target, unsigned long* size) {
   if (setjmp(errors.jump)) return false;
   jpeg_create_compress(&codec);
+  codec.image_width = static_cast<JDIMENSION>(width);
+  codec.image_height = static_cast<JDIMENSION>(height);
+  codec.input_components = 3;
+  codec.in_color_space = JCS_RGB;
   jpeg_mem_dest(&codec, target, size);
   jpeg_set_defaults(&codec);
   jpeg_set_quality(&codec, quality, TRUE);
@@ -188,11 +192,7 @@ std::vector<std::byte> encode_jpeg(int width, int height, std::span<const std::u
   codec.err = &errors.base;
   unsigned char* target = nullptr;
   unsigned long size = 0;
-  codec.image_width = static_cast<JDIMENSION>(width);
-  codec.image_height = static_cast<JDIMENSION>(height);
-  codec.input_components = 3;
-  codec.in_color_space = JCS_RGB;
-  const bool written = encode_rows(codec, errors, rgb.data(), quality, &target, &size);
+  const bool written = encode_rows(codec, errors, width, height, rgb.data(), quality, &target, &size);
   jpeg_destroy_compress(&codec);
   std::vector<std::byte> out;
   if (written) out.assign(reinterpret_cast<std::byte*>(target), reinterpret_cast<std::byte*>(target) + size);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "image/metrics/convolve.h"
 #include "image/metrics/flip_core.h"
@@ -21,9 +22,10 @@ constexpr double kFeatureWidthDegrees = 0.082;                   // w
 
 /// Rec.709 to XYZ relative to the white point D65, so that white is (1, 1, 1).
 Color relative_xyz(const Color& c) {
-  static const Mat3 xyz_from_rgb = glm::transpose(Mat3(10135552.0f / 24577794, 8788810.0f / 24577794, 4435075.0f / 24577794,  //
-                                                       2613072.0f / 12288897, 8788810.0f / 12288897, 887015.0f / 12288897,    //
-                                                       1425312.0f / 73733382, 8788810.0f / 73733382, 70074185.0f / 73733382));
+  // The fractions are exact for Rec.709's primaries; the last digits reach the values of FLIP.
+  static const Mat3 xyz_from_rgb =
+      glm::transpose(Mat3(10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794, 2613072.0 / 12288897, 8788810.0 / 12288897,
+                          887015.0 / 12288897, 1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382));
   static const Color white = xyz_from_rgb * Color(1);
   return (xyz_from_rgb * c) / white;
 }
