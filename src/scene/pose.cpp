@@ -69,24 +69,6 @@ bool has_keys(const Track& track) {
   return !track.times_s.empty() && track.values.size() >= per_key * track.times_s.size();
 }
 
-Mat4 local_matrix(const Node& node, float time_s) {
-  if (node.has_matrix && !node.is_animated()) return node.matrix;
-  Vec3 translation = node.translation, scale = node.scale;
-  glm::quat rotation = node.rotation;
-  if (has_keys(node.translation_track)) translation = Vec3(evaluate(node.translation_track, time_s, false));
-  if (has_keys(node.scale_track)) scale = Vec3(evaluate(node.scale_track, time_s, false));
-  if (has_keys(node.rotation_track)) {
-    const Vec4 q = evaluate(node.rotation_track, time_s, true);
-    rotation = glm::quat(q.w, q.x, q.y, q.z);
-  }
-  const float length = glm::length(rotation);
-  rotation = length > 0 ? rotation / length : glm::quat(1, 0, 0, 0);
-  Mat4 matrix = glm::mat4_cast(rotation);
-  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
-  matrix[3] = Vec4(translation, 1);
-  return matrix;
-}
-
 Vec3 transform_direction(const Mat4& m, const Vec3& direction) { return normalize_or(transform_vector(m, direction), direction); }
 
 /// Places one kind of light; sizes follow the scale of the node, one-sided emission keeps its side under a reflection.
@@ -117,12 +99,30 @@ struct PlaceLight {
 
 }  // namespace
 
+Mat4 node_matrix(const Node& node, float time_s) {
+  if (node.has_matrix && !node.is_animated()) return node.matrix;
+  Vec3 translation = node.translation, scale = node.scale;
+  glm::quat rotation = node.rotation;
+  if (has_keys(node.translation_track)) translation = Vec3(evaluate(node.translation_track, time_s, false));
+  if (has_keys(node.scale_track)) scale = Vec3(evaluate(node.scale_track, time_s, false));
+  if (has_keys(node.rotation_track)) {
+    const Vec4 q = evaluate(node.rotation_track, time_s, true);
+    rotation = glm::quat(q.w, q.x, q.y, q.z);
+  }
+  const float length = glm::length(rotation);
+  rotation = length > 0 ? rotation / length : glm::quat(1, 0, 0, 0);
+  Mat4 matrix = glm::mat4_cast(rotation);
+  for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
+  matrix[3] = Vec4(translation, 1);
+  return matrix;
+}
+
 std::vector<Mat4> node_matrices(const Scene& scene, float time_s) {
   std::vector<Mat4> world(scene.nodes.size());
   // Parents come first, so one sweep composes the hierarchy.
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& node = scene.nodes[i];
-    world[i] = local_matrix(node, time_s);
+    world[i] = node_matrix(node, time_s);
     if (node.parent.index < i) world[i] = world[node.parent.index] * world[i];
   }
   return world;

@@ -51,6 +51,8 @@ Bounds scene_bounds(const Scene& scene);
 std::uint64_t instanced_triangle_count(const Scene& scene);
 /// Bytes of the mesh arrays and images (shared ones once).
 std::uint64_t scene_bytes(const Scene& scene);
+/// Parent-from-node matrix at time_s (clamped to the tracks' ends).
+Mat4 node_matrix(const Node& node, float time_s);
 /// World-from-node matrices of all nodes at time_s (clamped to the tracks' ends).
 std::vector<Mat4> node_matrices(const Scene& scene, float time_s);
 /// The scene with every instance, camera and light that hangs on a node placed as at time_s. Lights are then in world space and leave

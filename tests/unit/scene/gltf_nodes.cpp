@@ -94,7 +94,7 @@ TEST(GltfNodes, SingularPlacementsAreLeftOut) {
   EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
-TEST(GltfNodes, GpuInstancesAreNodesBelowTheirs) {
+TEST(GltfNodes, GpuInstancesStandBelowTheirNode) {
   GltfFile file = file_with_triangle();
   const int translations = file.add_array<float>({0, 1, 0, 0, 2, 0}, kFloat, 2, "VEC3");
   const int scales = file.add_array<float>({1, 1, 1, 3, 3, 3}, kFloat, 2, "VEC3");
@@ -105,6 +105,16 @@ TEST(GltfNodes, GpuInstancesAreNodesBelowTheirs) {
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(transform_point(scene.instances[0].world_from_object, Vec3(1, 0, 0)), Vec3(11, 1, 0));
   EXPECT_EQ(transform_point(scene.instances[1].world_from_object, Vec3(1, 0, 0)), Vec3(13, 2, 0));
+  EXPECT_EQ(scene.nodes.size(), 1u) << "what does not move needs no nodes";
+
+  // The same below a node that moves from x = 10 to x = 20.
+  const int times = file.add_array<float>({0, 1}, kFloat, 2, "SCALAR");
+  const int values = file.add_array<float>({10, 0, 0, 20, 0, 0}, kFloat, 2, "VEC3");
+  file.push("animations", {{"samplers", {{{"input", times}, {"output", values}}}},
+                           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  const Scene moving = pose(file.load(), 1);
+  ASSERT_EQ(moving.instances.size(), 2u);
+  EXPECT_EQ(transform_point(moving.instances[1].world_from_object, Vec3(1, 0, 0)), Vec3(23, 2, 0));
 }
 
 TEST(GltfNodes, CamerasStandWhereTheirNodesDo) {

@@ -32,7 +32,7 @@ SpotLight read_spot(const JsonView& light, const Color& intensity) {
 void add_camera(Import& import, const JsonView& reference, NodeId node) {
   const JsonView json = import.document.element("cameras", import.document.resolve("cameras", reference));
   Camera camera;
-  camera.name = json.string_or("name", import.scene.nodes[node.index].name);
+  camera.name = json.find("name") ? json.name() : import.scene.nodes[node.index].name;
   camera.node = node;
   const JsonView type = json.require("type");
   if (type.as_string() == "perspective") {
@@ -67,7 +67,7 @@ void add_light(Import& import, const JsonView& node_extension, NodeId node) {
 
   // Candela and lux are taken 1:1 as W/sr and W/m²; lights shine along -Z of their node.
   Light light;
-  light.name = json.string_or("name", import.scene.nodes[node.index].name);
+  light.name = json.find("name") ? json.name() : import.scene.nodes[node.index].name;
   light.node = node;
   const JsonView type = json.require("type");
   if (type.as_string() == "point") {

@@ -109,6 +109,18 @@ void JsonView::vector_or(std::string_view key, std::span<float> out) const {
   if (const std::optional<JsonView> member = find(key)) member->read_vector(out);
 }
 
+std::string JsonView::name() const {
+  constexpr std::size_t kMaxLength = 128;
+  std::string text = string_or("name", path_);
+  if (text.size() > kMaxLength) {
+    // Not within a UTF-8 sequence: its following bytes begin with the bits 10.
+    std::size_t length = kMaxLength;
+    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0u) == 0x80u) --length;
+    text.resize(length);
+  }
+  return text;
+}
+
 std::optional<JsonView> JsonView::extension(std::string_view name) const {
   const std::optional<JsonView> extensions = find("extensions");
   return extensions ? extensions->find(name) : std::nullopt;

@@ -43,6 +43,8 @@ class JsonView {
   std::string string_or(std::string_view key, std::string_view fallback) const;
   /// Leaves `out` alone if the member is absent.
   void vector_or(std::string_view key, std::span<float> out) const;
+  /// The member `name`, else the path; cut off where it is so long that copies of it would matter.
+  std::string name() const;
   /// The member `extensions`/name, if it is there.
   std::optional<JsonView> extension(std::string_view name) const;
 

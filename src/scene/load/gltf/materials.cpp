@@ -17,7 +17,7 @@ class MaterialImporter {
     uv_set_ = 0;
     has_uv_set_ = mixes_uv_sets_ = false;
     Material material;
-    material.name = json.string_or("name", json.path());
+    material.name = json.name();
     material.two_sided = json.bool_or("doubleSided", false);
     read_reflectance(json, material);
     read_normal_map(json, material);

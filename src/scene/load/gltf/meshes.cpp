@@ -22,7 +22,7 @@ std::span<const MeshId> MeshImporter::meshes(std::size_t gltf_mesh) {
   if (const auto found = meshes_.find(gltf_mesh); found != meshes_.end()) return found->second;
   import_.context.check_cancelled();
   const JsonView mesh = import_.document.element("meshes", gltf_mesh);
-  const std::string name = mesh.string_or("name", mesh.path());
+  const std::string name = mesh.name();
   const JsonView primitives = mesh.require("primitives");
   std::vector<MeshId> ids;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -60,7 +60,9 @@ void MeshImporter::add_primitive(const JsonView& primitive, const std::string& n
   choose_material(primitive, mesh, uv_set);
   const Positions& vertices = positions(position_accessor);
   mesh.positions = vertices.array;
-  mesh.triangles = triangles(primitive, mode, position_accessor, vertices);
+  const Triangles& faces = triangles(primitive, mode, position_accessor, vertices);
+  mesh.triangles = faces.array;
+  mesh.bounds = faces.bounds;
   if (mesh.triangles.empty()) return;
 
   bool has_broken_normals = false;
@@ -82,12 +84,15 @@ void MeshImporter::add_primitive(const JsonView& primitive, const std::string& n
     ++without_uvs_;
   }
 
-  drop_unused_vertices(mesh);
+  if (uses_few_vertices(mesh)) {
+    import_.document.charge(mesh.triangles.size() * (sizeof(UVec3) + 3 * (2 * sizeof(Vec3) + sizeof(Vec2))), primitive.path());
+    drop_unused_vertices(mesh);
+  }
   if (has_broken_normals) {
+    import_.document.charge(mesh.normals.size_bytes(), primitive.path());
     repair_normals(mesh);
     ++broken_normals_;
   }
-  mesh.bounds = triangle_bounds(mesh);
   ids.emplace_back(import_.scene.meshes.size());
   import_.scene.meshes.push_back(std::move(mesh));
 }
@@ -100,8 +105,8 @@ void MeshImporter::choose_material(const JsonView& primitive, Mesh& mesh, std::u
   uv_set = material_uv_sets_[material];
 }
 
-SharedArray<UVec3> MeshImporter::triangles(const JsonView& primitive, std::uint64_t mode, std::size_t position_accessor,
-                                           const Positions& positions) {
+const MeshImporter::Triangles& MeshImporter::triangles(const JsonView& primitive, std::uint64_t mode, std::size_t position_accessor,
+                                                       const Positions& positions) {
   const std::optional<JsonView> reference = primitive.find("indices");
   constexpr auto kNoIndices = static_cast<std::size_t>(-1);
   const std::size_t accessor = reference ? import_.document.resolve("accessors", *reference) : kNoIndices;
@@ -129,7 +134,11 @@ SharedArray<UVec3> MeshImporter::triangles(const JsonView& primitive, std::uint6
   }
   import_.scene.dropped_triangles += before - result.size();
   drop_bad_triangles(positions.array.span(), result, nullptr, import_.scene.dropped_triangles);
-  return triangles_[key] = SharedArray<UVec3>(result);
+  Bounds bounds;
+  for (const UVec3& t : result) {
+    for (int corner = 0; corner < 3; ++corner) bounds.add(positions.array[t[corner]]);
+  }
+  return triangles_[key] = {.array = SharedArray<UVec3>(result), .bounds = bounds};
 }
 
 const MeshImporter::Positions& MeshImporter::positions(std::size_t accessor) {

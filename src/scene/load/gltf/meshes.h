@@ -32,10 +32,14 @@ class MeshImporter {
     SharedArray<Vec3> array;
     bool has_broken = false;  ///< zero vectors where the file had none
   };
+  struct Triangles {
+    SharedArray<UVec3> array;
+    Bounds bounds;
+  };
 
   void add_primitive(const JsonView& primitive, const std::string& name, std::vector<MeshId>& ids);
   void choose_material(const JsonView& primitive, Mesh& mesh, std::uint64_t& uv_set);
-  SharedArray<UVec3> triangles(const JsonView& primitive, std::uint64_t mode, std::size_t position_accessor, const Positions& positions);
+  const Triangles& triangles(const JsonView& primitive, std::uint64_t mode, std::size_t position_accessor, const Positions& positions);
   const Positions& positions(std::size_t accessor);
   const Normals& normals(std::size_t accessor);
   SharedArray<Vec2> uvs(std::size_t accessor);
@@ -49,7 +53,7 @@ class MeshImporter {
   std::map<std::size_t, Normals> normals_;
   std::map<std::size_t, SharedArray<Vec2>> uvs_;
   std::map<std::size_t, SharedArray<Vec4>> tangents_;
-  std::map<std::tuple<std::size_t, std::size_t, std::uint64_t>, SharedArray<UVec3>> triangles_;
+  std::map<std::tuple<std::size_t, std::size_t, std::uint64_t>, Triangles> triangles_;
   std::size_t lines_and_points_ = 0, without_positions_ = 0, morphed_ = 0, coloured_ = 0, without_uvs_ = 0, broken_normals_ = 0;
 };
 

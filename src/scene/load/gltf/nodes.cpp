@@ -17,7 +17,7 @@ std::vector<std::size_t> root_nodes(Import& import) {
   if (document.count("scenes") > 0) {
     const std::optional<JsonView> shown = document.root().find("scene");
     const JsonView scene = document.element("scenes", shown ? document.resolve("scenes", *shown) : 0);
-    import.scene.name = scene.string_or("name", "");
+    if (scene.find("name")) import.scene.name = scene.name();
     if (const std::optional<JsonView> nodes = scene.find("nodes")) {
       for (std::size_t i = 0; i < nodes->size(); ++i) roots.push_back(document.resolve("nodes", nodes->at(i)));
     }
@@ -39,7 +39,7 @@ std::vector<std::size_t> root_nodes(Import& import) {
 
 Node read_node(const JsonView& json, NodeId parent) {
   Node node;
-  node.name = json.string_or("name", json.path());
+  node.name = json.name();
   node.parent = parent;
   if (const std::optional<JsonView> matrix = json.find("matrix")) {
     matrix->read_vector({&node.matrix[0].x, 16});
@@ -53,7 +53,7 @@ Node read_node(const JsonView& json, NodeId parent) {
   return node;
 }
 
-/// The placements of EXT_mesh_gpu_instancing, each a node of its own below the one that has the extension.
+/// The placements of EXT_mesh_gpu_instancing, relative to the node that has the extension.
 std::vector<Node> read_instance_nodes(Import& import, const JsonView& extension, NodeId parent) {
   const JsonView attributes = extension.require("attributes");
   std::optional<std::size_t> count;
@@ -70,7 +70,6 @@ std::vector<Node> read_instance_nodes(Import& import, const JsonView& extension,
   };
   const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4), scales = read("SCALE", 3);
   std::vector<Node> nodes(count.value_or(0));
-  import.document.charge(nodes.size() * 64, extension.path());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     nodes[i].parent = parent;
     if (!translations.empty()) nodes[i].translation = {translations[3 * i], translations[3 * i + 1], translations[3 * i + 2]};
@@ -90,14 +89,22 @@ bool is_finite_matrix(const Mat4& m) {
   return true;
 }
 
-/// Removes what a matrix makes vanish (scale 0 on some axis) or overflow, unless it moves.
+/// Whether a node or one of its ancestors is animated.
+std::vector<bool> moving_nodes(const Scene& scene) {
+  std::vector<bool> moves(scene.nodes.size());
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    moves[i] = node.is_animated() || (node.parent.valid() && moves[node.parent.index]);
+  }
+  return moves;
+}
+
+/// Removes what a matrix makes vanish (scale 0 on some axis) or overflow; what moves may grow from nothing.
 void drop_unusable_instances(Import& import) {
+  const std::vector<bool> moves = moving_nodes(import.scene);
   const std::size_t dropped = std::erase_if(import.scene.instances, [&](const Instance& instance) {
     if (!is_finite_matrix(instance.world_from_object)) return true;
-    // A node that is animated may grow from nothing; its ancestors may too, which is_animated of itself does not tell.
-    for (NodeId node = instance.node; node.valid(); node = import.scene.nodes[node.index].parent) {
-      if (import.scene.nodes[node.index].is_animated()) return false;
-    }
+    if (instance.node.valid() && moves[instance.node.index]) return false;
     return glm::determinant(glm::dmat3(instance.world_from_object)) == 0;
   });
   if (dropped > 0) import.warn(fmt::format("{} placements with a singular or infinite transformation are left out", dropped));
@@ -137,6 +144,8 @@ NodeMap import_nodes(Import& import) {
 
 void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes) {
   Scene& scene = import.scene;
+  const std::vector<bool> moves = moving_nodes(scene);
+  const std::vector<Mat4> world = node_matrices(scene, 0);
   std::size_t skinned = 0;
   std::vector<std::pair<std::size_t, NodeId>> in_order(nodes.begin(), nodes.end());
   std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -149,17 +158,26 @@ void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes)
     skinned += json.find("skin").has_value();
 
     const std::span<const MeshId> parts = meshes.meshes(import.document.resolve("meshes", *reference));
-    std::vector<NodeId> placements = {id};
-    if (const std::optional<JsonView> instancing = json.extension("EXT_mesh_gpu_instancing")) {
-      placements.clear();
-      for (Node& node : read_instance_nodes(import, *instancing, id)) {
-        placements.emplace_back(scene.nodes.size());
-        scene.nodes.push_back(std::move(node));
+    const auto add_instances = [&](NodeId node, const Mat4& world_from_object) {
+      import.document.charge(parts.size() * sizeof(Instance), json.path());
+      for (const MeshId mesh : parts) {
+        scene.instances.push_back({.name = scene.nodes[id.index].name, .mesh = mesh, .world_from_object = world_from_object, .node = node});
       }
+    };
+    const std::optional<JsonView> instancing = json.extension("EXT_mesh_gpu_instancing");
+    if (!instancing) {
+      add_instances(id, Mat4(1));
+      continue;
     }
-    import.document.charge(parts.size() * placements.size() * sizeof(Instance) / 16, json.path());
-    for (const NodeId placement : placements) {
-      for (const MeshId mesh : parts) scene.instances.push_back({.name = scene.nodes[id.index].name, .mesh = mesh, .node = placement});
+    // Where nothing moves, a placement needs no node of its own: there may be millions.
+    for (Node& placement : read_instance_nodes(import, *instancing, id)) {
+      if (moves[id.index]) {
+        import.document.charge(sizeof(Node), json.path());
+        add_instances(NodeId(scene.nodes.size()), Mat4(1));
+        scene.nodes.push_back(std::move(placement));
+      } else {
+        add_instances({}, world[id.index] * node_matrix(placement, 0));
+      }
     }
   }
   if (skinned > 0) import.warn(fmt::format("{} skinned meshes are shown in their bind pose", skinned));

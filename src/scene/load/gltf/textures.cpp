@@ -75,7 +75,7 @@ TextureId TextureImporter::add(const JsonView& texture_info, ColorEncoding encod
                   static_cast<int>(node.wrap_v), static_cast<int>(node.filter), node.uv.matrix[0].x, node.uv.matrix[0].y,
                   node.uv.matrix[1].x, node.uv.matrix[1].y, node.uv.offset.x, node.uv.offset.y);
   const auto [found, is_new] = texture_ids_.try_emplace(key, TextureId(import_.scene.textures.size()));
-  if (is_new) import_.scene.textures.push_back({.name = texture.string_or("name", texture.path()), .node = node});
+  if (is_new) import_.scene.textures.push_back({.name = texture.name(), .node = node});
   return found->second;
 }
 
@@ -95,7 +95,7 @@ ImageId TextureImporter::image(std::size_t gltf_image) {
 
 TextureImporter::Source TextureImporter::read_source(const JsonView& image) {
   Source source;
-  source.name = image.string_or("name", image.path());
+  source.name = image.name();
   if (const std::optional<JsonView> reference = image.find("bufferView")) {
     source.bytes = import_.document.buffer_view(import_.document.resolve("bufferViews", *reference)).bytes;
     import_.document.charge(source.bytes.size(), image.path());

@@ -48,9 +48,12 @@ std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::size_t vertex_cou
   return assemble(mode, vertex_count, [](std::size_t i) { return static_cast<std::uint32_t>(i); });
 }
 
-void drop_unused_vertices(Mesh& mesh) {
+bool uses_few_vertices(const Mesh& mesh) {
   // At most three vertices a triangle; below half, a copy is worth it. The test must not cost a pass over the shared vertices.
-  if (3 * mesh.triangles.size() >= mesh.positions.size() / 2) return;
+  return 3 * mesh.triangles.size() < mesh.positions.size() / 2;
+}
+
+void drop_unused_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> kept;
   kept.reserve(3 * mesh.triangles.size());
   for (const UVec3& t : mesh.triangles) kept.insert(kept.end(), {t.x, t.y, t.z});
@@ -86,14 +89,6 @@ void repair_normals(Mesh& mesh) {
       target[i] = length_squared(old_normals[i]) > 0 ? old_normals[i] : normalize_or(sums[i], Vec3(0, 0, 1));
     }
   });
-}
-
-Bounds triangle_bounds(const Mesh& mesh) {
-  Bounds bounds;
-  for (const UVec3& t : mesh.triangles) {
-    for (int corner = 0; corner < 3; ++corner) bounds.add(mesh.positions[t[corner]]);
-  }
-  return bounds;
 }
 
 }  // namespace sightline::gltf

@@ -18,12 +18,11 @@ std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::span<const std::u
 /// The same for vertices in order.
 std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::size_t vertex_count);
 
-/// Copies the vertices that triangles use into arrays of the mesh's own, where they are but a small part of those it shares. Else every
-/// primitive would bring along all vertices of the file.
+/// True where the triangles use but a small part of the vertices, which the mesh then shares with others.
+bool uses_few_vertices(const Mesh& mesh);
+/// Copies the vertices that triangles use into arrays of the mesh's own. Else every primitive would bring along all that it shares.
 void drop_unused_vertices(Mesh& mesh);
 /// Gives vertices with a zero normal that of the triangles around them.
 void repair_normals(Mesh& mesh);
-/// Box of the vertices that triangles use.
-Bounds triangle_bounds(const Mesh& mesh);
 
 }  // namespace sightline::gltf
