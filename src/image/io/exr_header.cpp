@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -74,6 +75,31 @@ void read_value(std::string_view name, ByteReader value, ExrPartHeader& part) {
   }
 }
 
+/// OpenEXR reads values by their type, not by the stored size; where the two differ it would take pixels for sizes from there on.
+void check_value_size(std::string_view type, ByteReader value) {
+  using Size = std::pair<std::string_view, std::size_t>;
+  static constexpr std::array sizes = {Size{"box2i", 16},      Size{"box2f", 16},   Size{"chromaticities", 32},
+                                       Size{"compression", 1}, Size{"double", 8},   Size{"envmap", 1},
+                                       Size{"float", 4},       Size{"int", 4},      Size{"keycode", 28},
+                                       Size{"lineOrder", 1},   Size{"m33f", 36},    Size{"m44f", 64},
+                                       Size{"m33d", 72},       Size{"m44d", 128},   Size{"rational", 8},
+                                       Size{"tiledesc", 9},    Size{"timecode", 8}, Size{"v2i", 8},
+                                       Size{"v2f", 8},         Size{"v2d", 16},     Size{"v3i", 12},
+                                       Size{"v3f", 12},        Size{"v3d", 24},     Size{"deepImageState", 1}};
+  const auto* known = std::find_if(sizes.begin(), sizes.end(), [type](const Size& size) { return size.first == type; });
+  if (known != sizes.end() && value.remaining() != known->second) throw input_error("it has the wrong size for its type");
+  if (type == "stringvector") {
+    while (value.remaining() > 0) {
+      const std::int32_t length = value.i32_little();
+      if (length < 0) throw input_error("a text has a negative length");
+      value.take(static_cast<std::size_t>(length));
+    }
+  } else if (type == "chlist") {
+    while (!value.text_until('\0', kLongestName).empty()) value.take(16);
+    if (value.remaining() != 0) throw input_error("it goes on after its end");
+  }
+}
+
 /// False at the empty header that ends a list of parts.
 bool read_part(ByteReader& reader, ExrPartHeader& part, std::size_t& chunk_count) {
   static constexpr std::array<std::string_view, 7> once = {"channels", "chunkCount", "compression", "dataWindow",
@@ -86,10 +112,15 @@ bool read_part(ByteReader& reader, ExrPartHeader& part, std::size_t& chunk_count
       break;
     }
     const std::size_t offset = reader.position();
-    reader.text_until('\0', kLongestName);  // the type's name, which OpenEXR checks
+    const std::string_view type = reader.text_until('\0', kLongestName);
     const std::int32_t size = reader.i32_little();
     if (size < 0) throw input_error_at(offset, "an attribute has a negative size");
     ByteReader value(reader.take(static_cast<std::size_t>(size)));
+    try {
+      check_value_size(type, value);
+    } catch (const Error& error) {
+      throw input_error_at(offset, fmt::format("the attribute '{}' is malformed: {}", name, error.message()));
+    }
     if (std::find(once.begin(), once.end(), name) == once.end()) continue;
     if (!seen.insert(name).second) throw input_error_at(offset, fmt::format("the attribute '{}' stands twice", name));
     if (name == "chunkCount") {
