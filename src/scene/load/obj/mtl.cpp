@@ -161,7 +161,11 @@ class Builder {
   ImageId find_image(const std::string& file) {
     const auto [entry, is_new] = images_.try_emplace(file);
     if (is_new) {
-      if (const auto image = load_texture_image(directory_ / file, scene_, context_)) {
+      std::filesystem::path path = directory_ / file;
+      std::error_code ignored;
+      const std::filesystem::path beside = directory_ / path.filename();
+      if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(beside, ignored)) path = beside;
+      if (const auto image = load_texture_image(path, scene_, context_)) {
         entry->second = ImageId(scene_.images.size());
         scene_.images.push_back({.name = file, .image = image});
       }

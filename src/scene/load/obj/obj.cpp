@@ -168,7 +168,10 @@ class ObjReader {
       return;
     }
     std::replace(file.begin(), file.end(), '\\', '/');
-    const std::filesystem::path path = *directory_ / file;
+    std::filesystem::path path = *directory_ / file;
+    // Exporters write the path of their own machine; often the library lies beside the file.
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) path = *directory_ / std::filesystem::path(file).filename();
     if (!libraries_.insert(path.string()).second) return;
     try {
       const std::string text = read_text(path);
