@@ -72,8 +72,8 @@ void Builder::load_files() {
       warn(shapes_[shapes.front()].place, fmt::format("mesh file '{}' is not there; the shape is left out", shown(file)));
     }
   }
-  // The largest first, so that no long one starts last. Files of one size keep their order.
-  std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.bytes > b.bytes; });
+  // The largest first, so that no long one starts last.
+  std::sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.bytes > b.bytes; });
   parallel_for(context_, jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (jobs[i].shapes != nullptr) {

@@ -51,42 +51,45 @@ struct Metal {
 };
 constexpr std::array kMetals = {Metal{"Ag", kAgEta, kAgK}, Metal{"Al", kAlEta, kAlK}, Metal{"Au", kAuEta, kAuK}, Metal{"Cu", kCuEta, kCuK}};
 
+constexpr std::size_t kMostSamples = 9;
 struct Sampled {
   std::string_view name;
-  std::initializer_list<std::pair<float, float>> samples;
+  std::array<std::pair<float, float>, kMostSamples> samples;  ///< unused ones have wavelength 0
 };
 
 // Few samples suffice where the curve is smooth. Brass after [Querry1985] at three wavelengths.
-const std::array kOthers = {
-    Sampled{"metal-CuZn-eta", {{465.f, 0.947f}, {550.f, 0.5682f}, {630.f, 0.445f}}},
-    Sampled{"metal-CuZn-k", {{465.f, 1.92f}, {550.f, 2.588f}, {630.f, 3.522f}}},
-    Sampled{
-        "metal-MgO-eta",
-        {{404.6f, 1.761f}, {435.8f, 1.7547f}, {486.f, 1.7471f}, {546.2f, 1.7408f}, {589.3f, 1.7374f}, {656.3f, 1.7334f}, {706.4f, 1.731f}}},
-    Sampled{"metal-MgO-k", {{404.6f, 0.f}, {706.4f, 0.f}}},
+constexpr std::array kOthers = {
+    Sampled{"metal-CuZn-eta", {{std::pair(465.f, 0.947f), std::pair(550.f, 0.5682f), std::pair(630.f, 0.445f)}}},
+    Sampled{"metal-CuZn-k", {{std::pair(465.f, 1.92f), std::pair(550.f, 2.588f), std::pair(630.f, 3.522f)}}},
+    Sampled{"metal-MgO-eta",
+            {{std::pair(404.6f, 1.761f), std::pair(435.8f, 1.7547f), std::pair(486.f, 1.7471f), std::pair(546.2f, 1.7408f),
+              std::pair(589.3f, 1.7374f), std::pair(656.3f, 1.7334f), std::pair(706.4f, 1.731f)}}},
+    Sampled{"metal-MgO-k", {{std::pair(404.6f, 0.f), std::pair(706.4f, 0.f)}}},
     Sampled{"metal-TiO2-eta",
-            {{388.f, 3.49f},
-             {412.f, 3.24f},
-             {440.f, 3.2f},
-             {480.f, 3.08f},
-             {520.f, 3.f},
-             {560.f, 2.94f},
-             {600.f, 2.9f},
-             {660.f, 2.85f},
-             {740.f, 2.81f}}},
-    Sampled{"metal-TiO2-k", {{388.f, 0.f}, {740.f, 0.f}}},
+            {{std::pair(388.f, 3.49f), std::pair(412.f, 3.24f), std::pair(440.f, 3.2f), std::pair(480.f, 3.08f), std::pair(520.f, 3.f),
+              std::pair(560.f, 2.94f), std::pair(600.f, 2.9f), std::pair(660.f, 2.85f), std::pair(740.f, 2.81f)}}},
+    Sampled{"metal-TiO2-k", {{std::pair(388.f, 0.f), std::pair(740.f, 0.f)}}},
     Sampled{"glass-BK7",
-            {{410.f, 1.52957f}, {454.f, 1.52496f}, {498.f, 1.52155f}, {564.f, 1.51784f}, {630.f, 1.51519f}, {696.f, 1.51317f}}},
+            {{std::pair(410.f, 1.52957f), std::pair(454.f, 1.52496f), std::pair(498.f, 1.52155f), std::pair(564.f, 1.51784f),
+              std::pair(630.f, 1.51519f), std::pair(696.f, 1.51317f)}}},
     Sampled{"glass-BAF10",
-            {{414.f, 1.69246f}, {457.f, 1.6842f}, {500.f, 1.67819f}, {565.f, 1.67177f}, {629.f, 1.66727f}, {694.f, 1.66394f}}},
+            {{std::pair(414.f, 1.69246f), std::pair(457.f, 1.6842f), std::pair(500.f, 1.67819f), std::pair(565.f, 1.67177f),
+              std::pair(629.f, 1.66727f), std::pair(694.f, 1.66394f)}}},
     Sampled{"glass-FK51A",
-            {{422.f, 1.49465f}, {466.f, 1.49162f}, {511.f, 1.48936f}, {577.f, 1.48688f}, {643.f, 1.48508f}, {709.f, 1.48373f}}},
+            {{std::pair(422.f, 1.49465f), std::pair(466.f, 1.49162f), std::pair(511.f, 1.48936f), std::pair(577.f, 1.48688f),
+              std::pair(643.f, 1.48508f), std::pair(709.f, 1.48373f)}}},
     Sampled{"glass-LASF9",
-            {{412.f, 1.89454f}, {455.f, 1.87786f}, {497.f, 1.86614f}, {561.f, 1.85397f}, {625.f, 1.84566f}, {689.f, 1.83966f}}},
-    Sampled{"glass-F5", {{412.f, 1.7079f}, {455.f, 1.69455f}, {497.f, 1.68524f}, {561.f, 1.67564f}, {625.f, 1.66909f}, {689.f, 1.66435f}}},
-    Sampled{"glass-F10", {{422.f, 1.76736f}, {464.f, 1.75221f}, {507.f, 1.74158f}, {570.f, 1.73053f}, {634.f, 1.72298f}, {698.f, 1.7175f}}},
+            {{std::pair(412.f, 1.89454f), std::pair(455.f, 1.87786f), std::pair(497.f, 1.86614f), std::pair(561.f, 1.85397f),
+              std::pair(625.f, 1.84566f), std::pair(689.f, 1.83966f)}}},
+    Sampled{"glass-F5",
+            {{std::pair(412.f, 1.7079f), std::pair(455.f, 1.69455f), std::pair(497.f, 1.68524f), std::pair(561.f, 1.67564f),
+              std::pair(625.f, 1.66909f), std::pair(689.f, 1.66435f)}}},
+    Sampled{"glass-F10",
+            {{std::pair(422.f, 1.76736f), std::pair(464.f, 1.75221f), std::pair(507.f, 1.74158f), std::pair(570.f, 1.73053f),
+              std::pair(634.f, 1.72298f), std::pair(698.f, 1.7175f)}}},
     Sampled{"glass-F11",
-            {{412.f, 1.83747f}, {455.f, 1.81709f}, {497.f, 1.80316f}, {561.f, 1.78899f}, {625.f, 1.77948f}, {689.f, 1.77269f}}},
+            {{std::pair(412.f, 1.83747f), std::pair(455.f, 1.81709f), std::pair(497.f, 1.80316f), std::pair(561.f, 1.78899f),
+              std::pair(625.f, 1.77948f), std::pair(689.f, 1.77269f)}}},
 };
 
 Spectrum metal_spectrum(const std::array<float, kMetalSamples>& values) {
@@ -108,7 +111,12 @@ std::optional<Spectrum> named_spectrum(std::string_view name) {
     if (property == "-k") return metal_spectrum(metal.k);
   }
   for (const Sampled& other : kOthers) {
-    if (name == other.name) return Spectrum{other.samples};
+    if (name != other.name) continue;
+    Spectrum spectrum;
+    for (const auto& [wavelength_nm, value] : other.samples) {
+      if (wavelength_nm > 0) spectrum.samples.emplace_back(wavelength_nm, value);
+    }
+    return spectrum;
   }
   // pbrt gives three flint glasses two names.
   if (name.starts_with("glass-SF")) return named_spectrum("glass-" + std::string(name.substr(7)));
