@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "base/core/error.h"
@@ -12,6 +15,11 @@ namespace sightline {
 EmbreeDevice::EmbreeDevice(const std::string& isa) {
   // Without its configuration files Embree behaves the same for every user and folder.
   std::string settings = std::string("ignore_config_files=1") + embree_thread_setting();
+  // Embree silently ignores names that it does not know.
+  constexpr std::array<std::string_view, 5> kInstructionSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
+  if (!isa.empty() && std::find(kInstructionSets.begin(), kInstructionSets.end(), isa) == kInstructionSets.end()) {
+    throw usage_error(fmt::format("unknown instruction set '{}'", isa)).remedy("use sse2, sse4.2, avx, avx2 or avx512");
+  }
   if (!isa.empty()) settings += ",isa=" + isa;
   device_ = rtcNewDevice(settings.c_str());
   if (!device_) {
