@@ -71,7 +71,7 @@ Vec3 unit_normal(const Vec3& edge1, const Vec3& edge2);
 inline constexpr float kRounding = 0x1p-24f;
 /// Roundings of a point's coordinates that count: reconstructing it, offsetting it, and one to spare.
 inline constexpr float kPointRoundings = 3;
-/// Roundings relative to a triangle's size: edges, barycentric sum, the tracer's plane equation (16 leave the leak test a margin of 2).
+/// Roundings relative to a triangle's size: edges, barycentric sum, the tracer's plane equation.
 inline constexpr float kEdgeRoundings = 16;
 /// The same for spheres, relative to the radius: the tracer's discriminant loses more.
 inline constexpr float kRadiusRoundings = 32;
