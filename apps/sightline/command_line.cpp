@@ -221,7 +221,8 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
 
   CLI::App* gallery = app.add_subcommand("gallery", "pictures and what they say about themselves as one HTML page");
-  gallery->add_option("PICTURE", line.gallery.pictures, "picture files; a page of the same name (.html) beside one becomes its link")->required();
+  gallery->add_option("PICTURE", line.gallery.pictures, "picture files; a page of the same name (.html) beside one becomes its link")
+      ->required();
   gallery->add_option("-o,--output", line.gallery.output, "the page (.html)")->type_name("FILE")->required();
   gallery->add_option("--title", line.gallery.title, "heading")->type_name("TEXT");
   gallery->add_option("--exposure", line.gallery.exposure_ev, "stops")->type_name("EV");
@@ -239,7 +240,8 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
 
   const std::vector<std::pair<CLI::App*, CommandLine::Command>> commands = {
       {render, CommandLine::Command::render}, {compare, CommandLine::Command::compare}, {methods, CommandLine::Command::methods},
-      {info, CommandLine::Command::info},     {bench, CommandLine::Command::bench}, {gallery, CommandLine::Command::gallery},     {merge, CommandLine::Command::merge}};
+      {info, CommandLine::Command::info},     {bench, CommandLine::Command::bench},     {gallery, CommandLine::Command::gallery},
+      {merge, CommandLine::Command::merge}};
   for (const auto& [sub, command] : commands) add_common(*sub, line.common);
 
   try {

@@ -55,15 +55,8 @@ Threshold parse_threshold(const std::string& text) {
 }
 
 void write_difference(const std::string& path, const ColorImage& reference, const ColorImage& image, const MetricOptions& options) {
-  const ColorImage colors = false_color(flip_map(reference, image, options), reference.width, reference.height);
-  // The map's colours are display values already.
-  std::vector<std::uint8_t> pixels;
-  pixels.reserve(colors.pixels.size() * 3);
-  for (const Color& c : colors.pixels) {
-    for (int channel = 0; channel < 3; ++channel)
-      pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(c[channel], 0.f, 1.f))));
-  }
-  write_file(path, encode_png(colors.width, colors.height, 3, pixels));
+  const std::vector<std::uint8_t> pixels = false_color(flip_map(reference, image, options));
+  write_file(path, encode_png(reference.width, reference.height, 3, pixels));
 }
 
 }  // namespace

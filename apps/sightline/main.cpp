@@ -70,7 +70,8 @@ int run(int argc, char** argv) {
       return run_info(*line, context);
     case Command::bench:
       return run_bench(*line, console, context);
-    case Command::gallery: return run_gallery(*line);
+    case Command::gallery:
+      return run_gallery(*line);
     case Command::merge:
       return run_merge(*line, context);
     case Command::none:

@@ -31,9 +31,7 @@ struct Node {
   glm::quat rotation{1, 0, 0, 0};
   Vec3 scale{1};
   Track translation_track, rotation_track, scale_track;  ///< empty times = not animated
-  bool is_animated() const {
-    return !translation_track.times_s.empty() || !rotation_track.times_s.empty() || !scale_track.times_s.empty();
-  }
+  bool is_animated() const { return !translation_track.times_s.empty() || !rotation_track.times_s.empty() || !scale_track.times_s.empty(); }
 };
 
 }  // namespace sightline

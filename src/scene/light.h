@@ -32,7 +32,7 @@ struct DirectionalLight {
 /// One-sided rectangle: corners center ± half_u ± half_v, emits along normalize(cross(half_u, half_v)).
 struct RectangleLight {
   Vec3 center{0}, half_u{0.5f, 0, 0}, half_v{0, 0.5f, 0};
-  Color radiance{1};   ///< W/(sr·m²)
+  Color radiance{1};  ///< W/(sr·m²)
 };
 /// One-sided disk with semi-axes half_u, half_v.
 struct DiskLight {
@@ -50,7 +50,7 @@ struct SphereLight {
 struct Light {
   std::string name;
   std::variant<PointLight, SpotLight, DirectionalLight, RectangleLight, DiskLight, SphereLight> shape;
-  NodeId node;                  ///< valid: `shape` is in this node's space and follows it when the scene is posed
+  NodeId node;  ///< valid: `shape` is in this node's space and follows it when the scene is posed
 };
 
 enum class EnvironmentMapping { latlong, angular, octahedral };
@@ -60,8 +60,8 @@ struct Environment {
   std::shared_ptr<const Image> image;  ///< null: constant `scale`
   std::string name;
   EnvironmentMapping mapping = EnvironmentMapping::latlong;
-  Color scale{1};                      ///< multiplies the image; the radiance where there is none
-  glm::mat3 world_from_environment{1}; ///< rotation (or reflection) of the image's own frame
+  Color scale{1};                       ///< multiplies the image; the radiance where there is none
+  glm::mat3 world_from_environment{1};  ///< rotation (or reflection) of the image's own frame
 };
 
 }  // namespace sightline

@@ -66,17 +66,17 @@ enum class AlphaMode { opaque, mask, blend };
 struct Material {
   std::string name;
   SurfaceModel model = DiffuseMaterial{};
-  ColorParam emission{0.f};     ///< radiance, W/(sr·m²); black = no emitter
+  ColorParam emission{0.f};  ///< radiance, W/(sr·m²); black = no emitter
   bool emission_two_sided = false;
-  TextureId normal_map;         ///< tangent-space normals, linear encoding
+  TextureId normal_map;  ///< tangent-space normals, linear encoding
   float normal_scale = 1;
-  TextureId bump;               ///< displacement in world units, along the shading normal
+  TextureId bump;  ///< displacement in world units, along the shading normal
   float bump_scale = 1;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   FloatParam alpha{1.f};
-  bool two_sided = true;        ///< false: back faces are culled (seen through), as glTF's default
-  MediumId interior;            ///< absorbing medium behind the surface
+  bool two_sided = true;  ///< false: back faces are culled (seen through), as glTF's default
+  MediumId interior;      ///< absorbing medium behind the surface
 };
 
 /// Homogeneous medium that only absorbs: transmittance exp(-sigma_a d), sigma_a per world unit (Beer–Lambert).

@@ -39,15 +39,15 @@ class MeshSource {
 struct Mesh {
   std::string name;
   SharedArray<Vec3> positions;
-  SharedArray<Vec3> normals;    ///< unit shading normals
-  SharedArray<Vec2> uvs;        ///< v = 0 is the top row of the image
-  SharedArray<Vec4> tangents;   ///< xyz tangent, w = ±1 handedness of the bitangent (glTF)
-  SharedArray<UVec3> triangles; ///< vertex indices, counter-clockwise seen from the front
+  SharedArray<Vec3> normals;     ///< unit shading normals
+  SharedArray<Vec2> uvs;         ///< v = 0 is the top row of the image
+  SharedArray<Vec4> tangents;    ///< xyz tangent, w = ±1 handedness of the bitangent (glTF)
+  SharedArray<UVec3> triangles;  ///< vertex indices, counter-clockwise seen from the front
   /// Material of each triangle: indices into `materials`; empty = all use materials[0].
   SharedArray<std::uint16_t> triangle_materials;
-  std::vector<MaterialId> materials;  ///< palette; empty = the default material (Lambert 0.7)
-  Bounds bounds;                      ///< of `positions` or of the source
-  std::shared_ptr<MeshSource> source; ///< set instead of arrays while the mesh has not been materialised
+  std::vector<MaterialId> materials;   ///< palette; empty = the default material (Lambert 0.7)
+  Bounds bounds;                       ///< of `positions` or of the source
+  std::shared_ptr<MeshSource> source;  ///< set instead of arrays while the mesh has not been materialised
 
   MaterialId material_of(std::size_t triangle) const {
     if (materials.empty()) return {};

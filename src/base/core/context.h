@@ -25,7 +25,7 @@ using ProgressSink = std::function<void(const Progress&)>;
 /// Threads, log, cancellation and memory budget, passed into load, build, prepare and render. Shared by reference; `cancelled` may be set
 /// from another thread or a signal handler, everything else is fixed while a call runs.
 struct Context {
-  int threads = 0;  ///< worker threads; 0 = all that affinity and cgroup allow (resolved by thread_count())
+  int threads = 0;                        ///< worker threads; 0 = all that affinity and cgroup allow (resolved by thread_count())
   std::uint64_t memory_budget_bytes = 0;  ///< 0 = no limit
   std::uint64_t seed = 0;
   LogSink log;

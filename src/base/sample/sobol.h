@@ -21,7 +21,9 @@ constexpr std::uint32_t hash32(std::uint32_t x) {
   x ^= x >> 16;
   return x;
 }
-constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) { return hash32(a ^ (b * 0x9e3779b9u + 0x85ebca6bu + (a << 6) + (a >> 2))); }
+constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
+  return hash32(a ^ (b * 0x9e3779b9u + 0x85ebca6bu + (a << 6) + (a >> 2)));
+}
 
 /// Key of a pixel's sequences. `pixel` is y * width + x of the whole picture.
 constexpr std::uint32_t pixel_key(std::uint64_t seed, std::uint32_t pixel) {
