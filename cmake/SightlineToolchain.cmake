@@ -22,6 +22,7 @@ add_library(sightline_options INTERFACE)
 target_compile_options(sightline_options INTERFACE
   -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers  # designated initialisers leave members out on purpose
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false alarms inside std::string of GCC 12 at -O3
   $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>  # std::stable_sort of libstdc++ 12 uses what C++20 deprecates
   $<$<BOOL:${SIGHTLINE_WERROR}>:-Werror>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "base/core/error.h"
+#include "base/settings/settings.h"
 #include "session/options_text.h"
 #include "sightline/version.h"
 
@@ -174,6 +175,39 @@ void add_render_output(CLI::App& app, RenderCommand& r) {
 
 }  // namespace
 
+namespace {
+
+/// The mistake in one line; for an option or command that does not exist, with the one that was probably meant.
+Error mistake(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = &app;
+  for (const CLI::App* sub : app.get_subcommands()) command = sub;
+  Error usage = usage_error(error.what());
+  usage.remedy(fmt::format("see '{} --help'", command == &app ? app.get_name() : app.get_name() + " " + command->get_name()));
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (const CLI::App* sub : command->get_subcommands([](const CLI::App*) { return true; })) known.push_back(sub->get_name());
+  std::vector<std::string> left = command->remaining();
+  if (command != &app && left.empty()) left = app.remaining();
+  for (const std::string& argument : left) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const std::string nearest = nearest_name(name, known);
+    if (argument.starts_with("--") && !nearest.empty())
+      return usage_error(fmt::format("unknown option '{}'", name)).remedy(fmt::format("did you mean '{}'?", nearest));
+    if (argument.starts_with("--"))
+      return usage_error(fmt::format("unknown option '{}'", name))
+          .remedy(fmt::format("'sightline {} --help' lists them", command->get_name()));
+    if (command == &app) {
+      return usage_error(fmt::format("unknown command '{}'", argument))
+          .remedy(nearest.empty() ? "'sightline --help' lists them" : fmt::format("did you mean '{}'?", nearest));
+    }
+  }
+  return usage;
+}
+
+}  // namespace
+
 std::optional<CommandLine> parse_command_line(int argument_count, const char* const* arguments) {
   CommandLine line;
   CLI::App app("Sightline renders direct and global illumination on CPUs and makes visibility cheap.", "sightline");
@@ -216,6 +250,10 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
 
   CLI::App* bench = app.add_subcommand("bench", "measure: methods and tracers side by side");
   bench->add_option("SUITE", line.bench.suites, "trace (default)");
+  bench->add_option("--view", line.bench.views, "a standard view instead of the suite's own; repeatable")
+      ->type_name("NAME")
+      ->take_all()
+      ->expected(1);
   bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
@@ -250,7 +288,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
     app.exit(success, std::cout, std::cerr);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    throw usage_error(error.what()).remedy("see --help");
+    throw mistake(app, error);
   }
   for (const auto& [sub, command] : commands) {
     if (sub->parsed()) line.command = command;

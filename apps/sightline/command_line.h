@@ -56,7 +56,7 @@ struct InfoCommand {
 };
 
 struct BenchCommand {
-  std::vector<std::string> suites;
+  std::vector<std::string> suites, views;
   std::string json, markdown;
   bool quick = false;
 };

@@ -1,4 +1,6 @@
 // Embree behind the Tracer interface: one static scene in world space, and a top-level scene of instances and spheres.
+#include "trace/embree/embree_tracer.h"
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -52,6 +54,7 @@ class EmbreeTracer final : public Tracer {
   TracerStatistics statistics() const override { return statistics_; }
   const Placement& placement() const override { return placement_; }
   std::string_view name() const override { return "embree"; }
+  const EmbreeScenes& scenes() const { return scenes_; }
 
  private:
   void build(const Scene& scene, const Context& context, const EmbreeTracer* previous) {
@@ -134,6 +137,11 @@ class EmbreeTracer final : public Tracer {
 };
 
 }  // namespace
+
+const EmbreeScenes* embree_scenes(const Tracer& tracer) {
+  const auto* embree = dynamic_cast<const EmbreeTracer*>(&tracer);
+  return embree ? &embree->scenes() : nullptr;
+}
 
 std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, const TextureSet& textures, const TracerOptions& options,
                                            const Context& context, const Tracer* previous) {

@@ -48,7 +48,7 @@ TEST(Frame, MergedRangesEqualOneRunBitForBit) {
   EXPECT_EQ(second.first_sample(), 0u);
   EXPECT_EQ(second.samples_done(), 10u);
   for (const AovInfo& info : aov_table()) {
-    const auto a = whole.sums(info.id), b = second.sums(info.id);
+    const std::span<const ExactSum> a = whole.sums(info.id), b = second.sums(info.id);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i], b[i]);
   }
@@ -90,7 +90,7 @@ TEST(FrameFile, RoundTripKeepsEveryBit) {
   EXPECT_EQ(stored.frame.first_sample(), 5u);
   EXPECT_EQ(stored.frame.samples_done(), 4u);
   for (const AovInfo& info : aov_table()) {
-    const auto a = frame.sums(info.id), b = stored.frame.sums(info.id);
+    const std::span<const ExactSum> a = frame.sums(info.id), b = stored.frame.sums(info.id);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i], b[i]);
   }

@@ -41,4 +41,8 @@ BareResult bare_one_hit(const BareJob& job, int samples, const BareStyle& style,
 /// light.
 BareResult bare_paths(const BareJob& job, int spp, int bounces, const BareStyle& style, const Context& context);
 
+/// The same rays as a Tracer gets them, to the same hits: loads, calls, stores, nothing else. One scene, no instances.
+void bare_intersect(RTCScene scene, const RayBatch& rays, HitBatch& hits, CallStyle style);
+void bare_occluded(RTCScene scene, const RayBatch& rays, std::uint8_t* occluded, CallStyle style);
+
 }  // namespace sightline

@@ -1,4 +1,4 @@
-#include "report/bench/bare_loop.h"
+#include "bench/bare_loop.h"
 
 #include <chrono>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "base/sample/sobol.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "report/bench/bare_loop.cpp"
+#define HWY_TARGET_INCLUDE "bench/bare_loop.cpp"
 #include "base/simd/targets.h"
 
 #include <hwy/foreach_target.h>
