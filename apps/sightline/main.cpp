@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "base/core/error.h"
 #include "base/simd/simd_target.h"
@@ -23,13 +25,32 @@ extern "C" void on_signal(int) {
   _exit(sightline::app::kInterrupted);
 }
 
-void catch_signals(sightline::Context& context) {
-  cancelled_flag = &context.cancelled;
-  struct sigaction action = {};
-  action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  signal(SIGPIPE, SIG_IGN);
+/// While it lives, the first Ctrl-C sets the context's flag.
+class SignalScope {
+ public:
+  explicit SignalScope(sightline::Context& context) {
+    cancelled_flag = &context.cancelled;
+    struct sigaction action = {};
+    action.sa_handler = on_signal;
+    // Reads and writes go on after the handler has set its flag.
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+  }
+  ~SignalScope() { cancelled_flag = nullptr; }
+  SignalScope(const SignalScope&) = delete;
+  SignalScope& operator=(const SignalScope&) = delete;
+};
+
+/// What was printed must have arrived, or the exit code would lie. A reader that closed its end early (head) is told by the code alone.
+int after_flushing(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  const int error_number = errno;
+  if (code != sightline::app::kDone) return code;
+  if (error_number != EPIPE)
+    fmt::print(stderr, "sightline: standard output: cannot be written: {}\n", std::generic_category().message(error_number));
+  return sightline::app::kResource;
 }
 
 int exit_code(const sightline::Error& error) {
@@ -58,7 +79,7 @@ int run(int argc, char** argv) {
   context.seed = line->render.seed;
   sightline::app::Console console(line->common.progress, line->common.log_level);
   console.attach(context);
-  catch_signals(context);
+  const SignalScope signals(context);
   switch (line->command) {
     case Command::render:
       return run_render(*line, console, context);
@@ -84,14 +105,16 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    const int code = run(argc, argv);
-    cancelled_flag = nullptr;
-    return code;
+    return after_flushing(run(argc, argv));
   } catch (const sightline::Error& error) {
     fmt::print(stderr, "sightline: {}\n", error.what());
     return exit_code(error);
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "sightline: out of memory; use --memory-limit, fewer layers or a smaller scene\n");
+    return sightline::app::kResource;
+  } catch (const std::system_error& error) {
+    // Of the calls that report this way, those fail that want a thread or print.
+    if (error.code() != std::errc::broken_pipe) fmt::print(stderr, "sightline: {}\n", error.what());
     return sightline::app::kResource;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sightline: internal error: {}; please report this\n", error.what());

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "base/core/error.h"
 #include "commands.h"
 #include "film/frame_file.h"
 #include "image/io/image_io.h"
 #include "session/output.h"
+#include "sightline/version.h"
 
 namespace sightline::app {
 namespace {
@@ -19,10 +19,8 @@ SampleRange range_of(const Frame& frame) { return {frame.first_sample(), frame.f
 
 int run_merge(const CommandLine& line, Context& context) {
   const MergeCommand& command = line.merge;
-  const auto is_slice = [](const std::string& output) { return std::filesystem::path(output).extension() == ".slice"; };
-  for (const std::string& output : command.outputs) {
-    if (!is_slice(output)) check_output(output);
-  }
+  for (const std::string& output : command.outputs) check_output(output);
+  const ToneMap tone_map = tone_map_from_name(command.tonemap);
   std::vector<StoredFrame> slices;
   for (const std::string& path : command.slices) {
     slices.push_back(decode_frame(read_file(path), path));
@@ -41,15 +39,16 @@ int run_merge(const CommandLine& line, Context& context) {
   Frame frame = std::move(slices.front().frame);
   for (std::size_t i = 1; i < slices.size(); ++i) frame.merge(slices[i].frame);
   OutputOptions options;
-  options.tone_map = tone_map_from_name(command.tonemap);
+  options.tone_map = tone_map;
   options.exposure_ev = command.exposure_ev;
-  options.metadata = {{"sightline.merged", fmt::format("{} slices, {} samples", slices.size(), frame.samples_done())}};
-  for (const std::string& output : command.outputs) {
-    if (is_slice(output))
-      write_file(output, encode_frame(frame, slices.front().identity, slices.front().note));
-    else
-      write_output(output, frame, options);
-  }
+  options.identity = slices.front().identity;
+  options.note = slices.front().note;
+  options.metadata = {{"sightline.version", kVersion},
+                      {"sightline.command", line.render.command_line},
+                      {"sightline.samples", fmt::format("{}", frame.samples_done())},
+                      {"sightline.merged", fmt::format("{} slices", slices.size())},
+                      {"sightline.identity", options.identity.text}};
+  for (const std::string& output : command.outputs) write_output(output, frame, options);
   return kDone;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/core/error.h"
 #include "image/io/image_io.h"
@@ -15,7 +16,7 @@ struct Target {
   std::filesystem::path path;
 };
 
-constexpr std::array<std::string_view, 6> kFormats = {"exr", "hdr", "pfm", "png", "jpg", "jpeg"};
+constexpr std::array<std::string_view, 7> kFormats = {"exr", "hdr", "pfm", "png", "jpg", "jpeg", "slice"};
 
 Target target_of(const std::string& output) {
   Target target;
@@ -48,6 +49,8 @@ void write_output(const std::string& output, const Frame& frame, const OutputOpt
     LayeredImage image = frame.to_layered_image();
     image.metadata = options.metadata;
     bytes = encode_exr(image);
+  } else if (target.format == "slice") {
+    bytes = encode_frame(frame, options.identity, options.note);
   } else if (target.format == "hdr") {
     bytes = encode_hdr(frame.color_image());
   } else if (target.format == "pfm") {

@@ -1,15 +1,21 @@
 #include "session/render.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 
 #include "base/core/error.h"
 #include "base/simd/simd_target.h"
 #include "image/io/image_io.h"
+#include "session/pass_watch.h"
 
 namespace sightline {
 namespace {
 
 constexpr double kCheckpointSeconds = 60;
+// After Ctrl-C, a pass may go on for so long.
+constexpr double kGraceSeconds = 5;
 
 bool knows(const SettingsValue& value, std::string_view key) {
   for (const Setting& setting : value.schema().settings()) {
@@ -27,13 +33,42 @@ Frame resume_frame(const std::filesystem::path& path, const FrameIdentity& ident
   return std::move(stored.frame);
 }
 
-void check_memory(const Context& context, const World& world, const Frame& frame) {
-  if (context.memory_budget_bytes == 0) return;
-  const std::uint64_t needed = frame.memory_bytes() + world.acceleration_bytes() + scene_bytes(world.scene());
-  if (needed <= context.memory_budget_bytes) return;
-  throw resource_error(fmt::format("the picture needs {:.2f} GiB, the memory limit is {:.2f} GiB", static_cast<double>(needed) / (1u << 30),
-                                   static_cast<double>(context.memory_budget_bytes) / (1u << 30)))
-      .remedy("raise --memory-limit, or render smaller or with fewer layers");
+AovSet frame_layers(const RenderRequest& request) {
+  AovSet aovs = request.aovs;
+  if (request.target_error) aovs.add(Aov::variance);
+  return aovs;
+}
+
+// What two frames must share to be added up or continued.
+FrameIdentity frame_identity(const World& world, const View& view, const RenderResult& result, std::uint64_t seed) {
+  const Camera& camera = view.camera();
+  std::string text = fmt::format(
+      "scene {:016x}; size {}x{}; filter {}; seed {}; simd {}; method {}; visibility {}; light_samples {}; max_bounces {}; one {}",
+      scene_hash(world.scene()), result.frame.width(), result.frame.height(), pixel_filter_name(view.filter().kind()), seed,
+      simd_target_name(), result.method, result.visibility, result.light_samples, result.max_bounces, result.spp == 1);
+  for (const auto& [name, value] : result.settings) text += fmt::format("; {}={}", name, value);
+  text += "; camera";
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) text += fmt::format(" {}", camera.world_from_camera[column][row]);
+  }
+  text += fmt::format(" {} {} {} {}", camera.fov_rad, camera.ortho_height, camera.lens_radius, camera.focal_distance);
+  return {text};
+}
+
+bool has_samples(const Frame& frame) {
+  for (const std::uint32_t count : frame.samples_per_tile()) {
+    if (count > 0) return true;
+  }
+  return false;
+}
+
+// Saves progress; a disk that is full must not cost the picture that is being made.
+void write_checkpoint(const std::filesystem::path& path, const RenderResult& result, const Context& context) {
+  try {
+    write_file(path, encode_frame(result.frame, result.identity, {}));
+  } catch (const Error& error) {
+    context.warn(fmt::format("the checkpoint is not saved: {}", error.what()));
+  }
 }
 
 }  // namespace
@@ -54,18 +89,21 @@ ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& vi
   return resolved;
 }
 
-FrameIdentity frame_identity(const World& world, const Camera& camera, IVec2 size_px, const RenderResult& result, std::uint64_t seed) {
-  std::string text =
-      fmt::format("scene {:016x}; size {}x{}; seed {}; simd {}; method {}; visibility {}; light_samples {}; max_bounces {}; one {}",
-                  scene_hash(world.scene()), size_px.x, size_px.y, seed, simd_target_name(), result.method, result.visibility,
-                  result.light_samples, result.max_bounces, result.spp == 1);
-  for (const auto& [name, value] : result.settings) text += fmt::format("; {}={}", name, value);
-  text += "; camera";
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) text += fmt::format(" {}", camera.world_from_camera[column][row]);
-  }
-  text += fmt::format(" {} {} {} {}", camera.fov_rad, camera.ortho_height, camera.lens_radius, camera.focal_distance);
-  return {text};
+void check_frame_memory(IVec2 size_px, const RenderRequest& request, std::uint64_t other_bytes, const Context& context) {
+  const AovSet aovs = frame_layers(request);
+  std::uint64_t channels = 0;
+  for (const AovInfo& info : aov_table()) channels += aovs.has(info.id) ? info.channels.size() : 0;
+  // While it is written, a picture also exists as floats and once more encoded.
+  const std::uint64_t pixels = static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y);
+  const std::uint64_t needed = other_bytes + pixels * channels * (sizeof(ExactSum) + 2 * sizeof(float));
+  const auto machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  const std::uint64_t limit = context.memory_budget_bytes ? context.memory_budget_bytes : machine;
+  if (needed <= limit) return;
+  constexpr double gib = 1u << 30;
+  throw resource_error(fmt::format("scene and picture need {:.2f} GiB, {} {:.2f} GiB", static_cast<double>(needed) / gib,
+                                   context.memory_budget_bytes ? "the memory limit is" : "this machine has",
+                                   static_cast<double>(limit) / gib))
+      .remedy(fmt::format("{}render smaller or with fewer layers", context.memory_budget_bytes ? "raise --memory-limit, or " : ""));
 }
 
 RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
@@ -92,8 +130,8 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   job.visibility = visibility.get();
   method.check(world->scene(), job);
 
-  AovSet aovs = request.aovs;
-  if (request.target_error) aovs.add(Aov::variance);
+  const AovSet aovs = frame_layers(request);
+  check_frame_memory(size_px, request, world->acceleration_bytes() + scene_bytes(world->scene()), context);
   RenderResult result{Frame(size_px.x, size_px.y, aovs, samples.begin),
                       {},
                       StopReason::none,
@@ -104,12 +142,12 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
                       job.light_samples,
                       job.max_bounces,
                       std::nullopt,
+                      {},
                       {}};
   result.settings = settings.method.to_text();
   for (auto& setting : settings.visibility.to_text()) result.settings.push_back(std::move(setting));
-  const FrameIdentity identity = frame_identity(*world, camera, size_px, result, context.seed);
-  if (request.resume) result.frame = resume_frame(*request.resume, identity, samples, aovs);
-  check_memory(context, *world, result.frame);
+  result.identity = frame_identity(*world, view, result, context.seed);
+  if (request.resume) result.frame = resume_frame(*request.resume, result.identity, samples, aovs);
 
   const Stopwatch prepare_watch;
   const std::unique_ptr<const Bake> bake = method.prepare(job, context);
@@ -119,9 +157,12 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   const ScheduleLimits limits{samples, request.target_error, request.time_limit_s};
   ScheduleState state;
   const Stopwatch render_watch;
+  std::optional<double> seconds_left;
+  if (request.time_limit_s) seconds_left = std::max(0.0, *request.time_limit_s - since_start.seconds());
+  const PassWatch watch(context, seconds_left, kGraceSeconds);
   double last_checkpoint = 0;
   const auto checkpoint = [&] {
-    if (request.checkpoint) write_file(*request.checkpoint, encode_frame(result.frame, identity, {}));
+    if (request.checkpoint) write_checkpoint(*request.checkpoint, result, context);
     last_checkpoint = render_watch.seconds();
   };
   while (true) {
@@ -134,17 +175,23 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
     if (work.stop != StopReason::none) break;
     const Stopwatch pass_watch;
     try {
-      method.render_pass(job, work.pass, result.frame, result.statistics, context);
+      method.render_pass(job, work.pass, result.frame, result.statistics, watch.context());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::interrupted) throw;
-      result.stop = StopReason::interrupted;
+      result.stop = watch.interrupted() ? StopReason::interrupted : StopReason::time_limit;
       break;
     }
     state.seconds_per_sample = pass_watch.seconds() / work.pass.count();
-    for (FrameSink* sink : sinks) sink->pass_done(result.frame, work.pass, samples);
+    for (FrameSink* sink : sinks) sink->pass_done(result.frame, work.pass, samples, result.statistics);
     if (render_watch.seconds() - last_checkpoint > kCheckpointSeconds) checkpoint();
   }
   result.seconds.render = render_watch.seconds();
+  if (!has_samples(result.frame)) {
+    if (result.stop == StopReason::interrupted) throw Error(ErrorCode::interrupted, "interrupted before any part of the picture was done");
+    if (result.stop == StopReason::time_limit)
+      throw resource_error(fmt::format("the time limit of {} s passed before any part of the picture was done", *request.time_limit_s))
+          .remedy("raise --time-limit");
+  }
   checkpoint();
   result.error = result.frame.estimated_error();
   return result;

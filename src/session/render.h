@@ -42,17 +42,21 @@ struct RenderResult {
   int spp = 0, light_samples = 0, max_bounces = 0;
   std::optional<double> error;
   Timings seconds;
+  FrameIdentity identity;  ///< what slices and checkpoints of this picture carry
 };
 
 /// Receives snapshots; called between passes on the rendering thread. The session knows nothing of files, bars or servers.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  virtual void pass_done(const Frame& frame, SampleRange pass, SampleRange all) = 0;
+  /// `statistics` are those of all passes so far.
+  virtual void pass_done(const Frame& frame, SampleRange pass, SampleRange all, const PassStatistics& statistics) = 0;
 };
 
 /// Renders one view. `filter` names the pixel filter that View was made with unless total spp is 1 (then rays go through pixel centres).
-/// Cancelling the context ends the loop with what complete tiles hold (StopReason::interrupted); nothing is thrown for it.
+/// Cancelling the context ends the loop after the pass, or, if that takes longer than 5 s, with what complete tiles hold
+/// (StopReason::interrupted); a time limit ends it within the pass. Both throw only if there is no complete tile at all. A checkpoint that
+/// cannot be written is a warning.
 RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
                     const RenderRequest& request, const Context& context, const Stopwatch& since_start, std::vector<FrameSink*> sinks = {});
 
@@ -62,8 +66,9 @@ struct ResolvedSettings {
 };
 ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& visibility, const std::vector<std::string>& assignments);
 
-/// What two frames must share to be added up or continued.
-FrameIdentity frame_identity(const World& world, const Camera& camera, IVec2 size_px, const RenderResult& result, std::uint64_t seed);
+/// Throws Error{resource} if a frame of that size with the layers that the request leads to does not fit the context's memory budget, or,
+/// without a budget, the machine. `other_bytes` are taken already.
+void check_frame_memory(IVec2 size_px, const RenderRequest& request, std::uint64_t other_bytes, const Context& context);
 
 /// Name of the SIMD target that Highway kernels run on ("AVX3", ...).
 std::string simd_target_name();

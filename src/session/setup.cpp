@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
@@ -19,6 +21,14 @@ EnvironmentMapping mapping_from_name(const std::string& name) {
   if (name == "angular") return EnvironmentMapping::angular;
   if (name == "octahedral") return EnvironmentMapping::octahedral;
   throw usage_error(fmt::format("unknown environment mapping '{}'", name)).remedy("known: latlong, angular, octahedral");
+}
+
+// Names for a message of one line, not more of them than it can hold.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 12;
+  const std::string rest = names.size() > shown ? fmt::format(", ... ({} in all; sightline info lists them)", names.size()) : "";
+  return fmt::format("known: {}{}",
+                     fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(shown, names.size())), ", "), rest);
 }
 
 Camera look_at_camera(const Vec3& eye, const Vec3& target, Vec3 up, float fov_deg) {
@@ -92,8 +102,10 @@ Camera choose_camera(const Scene& scene, const ViewRequest& request) {
       if (scene.cameras[i].name == *request.camera || (is_index && i == index && !found)) found = &scene.cameras[i];
     }
     if (!found) {
+      const std::string nearest = nearest_name(*request.camera, known);
+      const std::string hint = nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
       throw usage_error(fmt::format("no camera '{}' in the scene", *request.camera))
-          .remedy(known.empty() ? "it has none; use --eye and --target" : fmt::format("known: {}", fmt::join(known, ", ")));
+          .remedy(known.empty() ? "it has none; use --eye and --target" : hint + listed(known));
     }
     camera = *found;
   } else if (!scene.cameras.empty()) {
@@ -109,7 +121,12 @@ Camera choose_camera(const Scene& scene, const ViewRequest& request) {
 }
 
 IVec2 choose_size(const Scene& scene, const ViewRequest& request) {
-  return request.size_px.value_or(scene.hints.size_px.value_or(IVec2(1280, 720)));
+  const IVec2 size = request.size_px.value_or(scene.hints.size_px.value_or(IVec2(1280, 720)));
+  // Pixel numbers are 32-bit.
+  if (size.x < 1 || size.y < 1 || static_cast<std::int64_t>(size.x) * size.y > std::numeric_limits<std::int32_t>::max())
+    throw usage_error(fmt::format("a picture of {}x{} pixels is not possible", size.x, size.y))
+        .remedy("use --size with fewer than 2^31 pixels");
+  return size;
 }
 
 }  // namespace sightline
