@@ -1,9 +1,11 @@
 // Positions, normals, errors and materials of hits, in batches.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "trace/sphere.h"
 #include "world/surface_records.h"
+#include "world/triangle_lanes.h"
 
 namespace sightline {
 namespace {
@@ -83,8 +85,8 @@ void reconstruct_sphere(const SurfaceTables& tables, const LightTable& lights, c
   surfaces.light[i] = material.emits ? lights.light_of(hits.instance[i], 0) : kNoLight;
 }
 
-void reconstruct_triangle(const SurfaceTables& tables, const LightTable& lights, const HitBatch& hits, std::size_t i,
-                          SurfaceBatch& surfaces) {
+// The scalar definition.
+void reconstruct_triangle(const SurfaceTables& tables, const HitBatch& hits, std::size_t i, SurfaceBatch& surfaces) {
   const InstanceRecord& record = tables.instances[hits.instance[i]];
   const std::uint32_t primitive = hits.primitive[i];
   const float u = hits.u[i], v = hits.v[i];
@@ -106,11 +108,59 @@ void reconstruct_triangle(const SurfaceTables& tables, const LightTable& lights,
   set(surfaces.geometric_normal, i, geometric);
   set(surfaces.shading_normal, i, record.normals ? interpolated_normal(record, primitive, u, v, geometric) : geometric);
   surfaces.error[i] = error;
+}
 
+void set_triangle_material(const SurfaceTables& tables, const LightTable& lights, const HitBatch& hits, std::size_t i,
+                           SurfaceBatch& surfaces) {
+  const InstanceRecord& record = tables.instances[hits.instance[i]];
+  const std::uint32_t primitive = hits.primitive[i];
   const std::uint32_t entry = record.triangle_materials ? record.triangle_materials[primitive] : 0;
   const MaterialRecord& material = tables.materials[record.palette[std::min(entry, record.palette_size - 1)]];
   set_material(material, surfaces, i);
   surfaces.light[i] = material.emits ? lights.light_of(hits.instance[i], primitive) : kNoLight;
+}
+
+// One triangle of a world-space mesh into its lane.
+void gather(const InstanceRecord& record, std::uint32_t primitive, std::size_t lane, TriangleLanes& lanes) {
+  const UVec3 t = record.triangles[primitive];
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec3& p = record.positions[t[corner]];
+    lanes.p[corner][0][lane] = p.x, lanes.p[corner][1][lane] = p.y, lanes.p[corner][2][lane] = p.z;
+  }
+  lanes.winding[lane] = record.winding;
+  const auto bit = static_cast<std::uint16_t>(1u << lane);
+  lanes.active = static_cast<std::uint16_t>(lanes.active | bit);
+  if (!record.normals) return;
+  lanes.smooth = static_cast<std::uint16_t>(lanes.smooth | bit);
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec3& n = record.normals[t[corner]];
+    lanes.n[corner][0][lane] = n.x, lanes.n[corner][1][lane] = n.y, lanes.n[corner][2][lane] = n.z;
+  }
+}
+
+// At most 16 hits: triangles of world-space meshes together, the rest one by one.
+void reconstruct_block(const SurfaceTables& tables, const LightTable& lights, const RayBatch& rays, const HitBatch& hits, std::size_t begin,
+                       std::size_t end, SurfaceBatch& surfaces) {
+  TriangleLanes lanes;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t instance = hits.instance[i];
+    if (instance == kNoHit) {
+      reconstruct_miss(surfaces, i);
+    } else if (instance & kSphereBit) {
+      reconstruct_sphere(tables, lights, rays, hits, i, surfaces);
+    } else {
+      const InstanceRecord& record = tables.instances[instance];
+      if (record.transforms || record.transforms_normals)
+        reconstruct_triangle(tables, hits, i, surfaces);
+      else
+        gather(record, hits.primitive[i], i - begin, lanes);
+      set_triangle_material(tables, lights, hits, i, surfaces);
+    }
+  }
+  if (lanes.active == 0) return;
+  unsigned left = reconstruct_lanes(lanes, hits.u.data(), hits.v.data(), begin, surfaces);
+  for (; left != 0; left &= left - 1)
+    reconstruct_triangle(tables, hits, begin + static_cast<std::size_t>(std::countr_zero(left)), surfaces);
 }
 
 // Zero where the shading normal is the facet's own.
@@ -175,16 +225,8 @@ void reconstruct(const SurfaceTables& tables, const LightTable& lights, const Ra
   for (std::size_t begin = 0; begin < hits.size; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, hits.size);
     prefetch(tables, hits, begin, end);
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t instance = hits.instance[i];
-      if (instance == kNoHit) {
-        reconstruct_miss(surfaces, i);
-      } else if (instance & kSphereBit) {
-        reconstruct_sphere(tables, lights, rays, hits, i, surfaces);
-      } else {
-        reconstruct_triangle(tables, lights, hits, i, surfaces);
-      }
-    }
+    for (std::size_t first = begin; first < end; first += kLanes)
+      reconstruct_block(tables, lights, rays, hits, first, std::min(first + kLanes, end), surfaces);
   }
   if (!tables.shadow_terminator) {
     surfaces.shadow_offset = {};

@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<std::uint32_t, 16>;
 using V = hn::Vec<D>;
 
-V reverse_bits_v(D d, V x) {
+HWY_INLINE V reverse_bits_v(D d, V x) {
   x = hn::Or(hn::ShiftRight<16>(x), hn::ShiftLeft<16>(x));
   const auto step = [&]<int kShift>(std::uint32_t mask, std::integral_constant<int, kShift>) {
     const V m = hn::Set(d, mask);
@@ -28,7 +28,7 @@ V reverse_bits_v(D d, V x) {
   return x;
 }
 
-V hash32_v(D d, V x) {
+HWY_INLINE V hash32_v(D d, V x) {
   x = hn::Xor(x, hn::ShiftRight<16>(x));
   x = hn::Mul(x, hn::Set(d, 0x7feb352du));
   x = hn::Xor(x, hn::ShiftRight<15>(x));
@@ -36,7 +36,7 @@ V hash32_v(D d, V x) {
   return hn::Xor(x, hn::ShiftRight<16>(x));
 }
 
-V laine_karras_v(D d, V x, V seed) {
+HWY_INLINE V laine_karras_v(D d, V x, V seed) {
   x = hn::Xor(x, hn::Mul(x, hn::Set(d, 0x3d20adeau)));
   x = hn::Add(x, seed);
   x = hn::Mul(x, hn::Or(hn::ShiftRight<16>(seed), hn::Set(d, 1u)));
@@ -44,7 +44,7 @@ V laine_karras_v(D d, V x, V seed) {
   return hn::Xor(x, hn::Mul(x, hn::Set(d, 0x53a22864u)));
 }
 
-V sobol1_reversed_v(D d, V x) {
+HWY_INLINE V sobol1_reversed_v(D d, V x) {
   x = hn::Xor(x, hn::And(hn::ShiftRight<1>(x), hn::Set(d, 0x55555555u)));
   x = hn::Xor(x, hn::And(hn::ShiftRight<2>(x), hn::Set(d, 0x33333333u)));
   x = hn::Xor(x, hn::And(hn::ShiftRight<4>(x), hn::Set(d, 0x0f0f0f0fu)));
@@ -52,25 +52,39 @@ V sobol1_reversed_v(D d, V x) {
   return hn::Xor(x, hn::ShiftRight<16>(x));
 }
 
+// hash_combine(key, pair)
+HWY_INLINE V pair_key_v(D d, V key, std::uint32_t pair) {
+  const V sum = hn::Add(hn::Set(d, pair * 0x9e3779b9u + 0x85ebca6bu), hn::Add(hn::ShiftLeft<6>(key), hn::ShiftRight<2>(key)));
+  return hash32_v(d, hn::Xor(key, sum));
+}
+
+HWY_INLINE void store_unit(V bits, float* to) {
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToFloat<D> df;
+  hn::Store(hn::Mul(hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<8>(bits))), hn::Set(df, 0x1p-24f)), df, to);
+}
+
 void Sobol2d(const std::uint32_t* HWY_RESTRICT keys, const std::uint32_t* HWY_RESTRICT indices, std::uint32_t pair, std::size_t count,
              float* HWY_RESTRICT u, float* HWY_RESTRICT v) {
   const D d;
-  const hn::RebindToSigned<D> di;
-  const hn::RebindToFloat<D> df;
-  const auto scale = hn::Set(df, 0x1p-24f);
-  const V pair_term = hn::Set(d, pair * 0x9e3779b9u + 0x85ebca6bu);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V key = hn::Load(d, keys + i);
-    // hash_combine(key, pair)
-    const V sum = hn::Add(pair_term, hn::Add(hn::ShiftLeft<6>(key), hn::ShiftRight<2>(key)));
-    const V pair_key = hash32_v(d, hn::Xor(key, sum));
+    const V pair_key = pair_key_v(d, hn::Load(d, keys + i), pair);
     const V shuffled = reverse_bits_v(d, laine_karras_v(d, reverse_bits_v(d, hn::Load(d, indices + i)), pair_key));
     const V key_x = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0xa511e9b3u)));
+    store_unit(reverse_bits_v(d, laine_karras_v(d, shuffled, key_x)), u + i);
     const V key_y = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0x63d83595u)));
-    const V x = reverse_bits_v(d, laine_karras_v(d, shuffled, key_x));
-    const V y = reverse_bits_v(d, laine_karras_v(d, sobol1_reversed_v(d, shuffled), key_y));
-    hn::Store(hn::Mul(hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<8>(x))), scale), df, u + i);
-    hn::Store(hn::Mul(hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<8>(y))), scale), df, v + i);
+    store_unit(reverse_bits_v(d, laine_karras_v(d, sobol1_reversed_v(d, shuffled), key_y)), v + i);
+  }
+}
+
+void Sobol1d(const std::uint32_t* HWY_RESTRICT keys, const std::uint32_t* HWY_RESTRICT indices, std::uint32_t pair, std::size_t count,
+             float* HWY_RESTRICT u) {
+  const D d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const V pair_key = pair_key_v(d, hn::Load(d, keys + i), pair);
+    const V shuffled = reverse_bits_v(d, laine_karras_v(d, reverse_bits_v(d, hn::Load(d, indices + i)), pair_key));
+    const V key_x = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0xa511e9b3u)));
+    store_unit(reverse_bits_v(d, laine_karras_v(d, shuffled, key_x)), u + i);
   }
 }
 
@@ -80,9 +94,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline {
 HWY_EXPORT(Sobol2d);
+HWY_EXPORT(Sobol1d);
 
 void sobol_2d(const std::uint32_t* keys, const std::uint32_t* indices, std::uint32_t pair, std::size_t count, float* u, float* v) {
   HWY_DYNAMIC_DISPATCH(Sobol2d)(keys, indices, pair, count, u, v);
+}
+
+void sobol_1d(const std::uint32_t* keys, const std::uint32_t* indices, std::uint32_t pair, std::size_t count, float* u) {
+  HWY_DYNAMIC_DISPATCH(Sobol1d)(keys, indices, pair, count, u);
 }
 
 }  // namespace sightline

@@ -74,6 +74,8 @@ inline Vec2 sobol_2d(std::uint32_t key, std::uint32_t index, std::uint32_t pair)
 /// The same for many samples in SIMD, equal to sobol_2d bit for bit. All arrays 64-byte aligned and padded to kLanes; u and v are written
 /// for padded(count) lanes.
 void sobol_2d(const std::uint32_t* keys, const std::uint32_t* indices, std::uint32_t pair, std::size_t count, float* u, float* v);
+/// The first number of each pair alone.
+void sobol_1d(const std::uint32_t* keys, const std::uint32_t* indices, std::uint32_t pair, std::size_t count, float* u);
 
 /// Which pair of dimensions serves what. Bounce 0 is the first surface.
 namespace dimension {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/sample/sobol.h"
 #include "shade/material_eval.h"
@@ -22,6 +23,11 @@ float power_heuristic(float n_pdf, float other) {
 
 Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 void store(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
+void fill(Vec3Batch& batch, std::size_t first, std::size_t count, const Vec3& v) {
+  std::fill_n(batch.x.data() + first, count, v.x);
+  std::fill_n(batch.y.data() + first, count, v.y);
+  std::fill_n(batch.z.data() + first, count, v.z);
+}
 
 // Pixels of a tile in 4x4 blocks, so that 16 neighbouring lanes are a square.
 std::vector<std::uint32_t> block_order(const Tile& tile, int width) {
@@ -50,8 +56,8 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   slot_.resize(kBatch), throughput_.resize(kBatch), bsdf_pdf_.resize(kBatch), previous_.resize(kBatch), previous_normal_.resize(kBatch);
   medium_.resize(kBatch), cone_width_.resize(kBatch), cone_spread_.resize(kBatch);
   bsdf_.resize(kBatch), frame_.resize(kBatch), shaded_.resize(kBatch), plain_.resize(kBatch);
-  scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), pdf_.resize(kBatch), lane_point_.resize(kBatch);
-  u0_.resize(kBatch), u1_.resize(kBatch), u2_.resize(kBatch), u3_.resize(kBatch);
+  scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), pdf_.resize(kBatch), u0_.resize(kBatch), u1_.resize(kBatch),
+      u2_.resize(kBatch), u3_.resize(kBatch);
   light_position_.resize(kBatch), light_normal_.resize(kBatch), wi_.resize(kBatch);
   shadow_.resize(kBatch), occluded_.resize(kBatch);
 }
@@ -207,7 +213,7 @@ void PathKernel::sample_lights(std::uint32_t bounce) {
 void PathKernel::draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals) {
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPoint), count, u0_.data(), u1_.data());
   if (world_.lights().size() > 1)
-    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), count, u2_.data(), u3_.data());
+    sobol_1d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), count, u2_.data());
   world_.lights().sample(positions, normals, u2_, u0_, u1_, count, light_);
 }
 
@@ -232,31 +238,30 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
     if (lanes == 0) return;
     draw_light_samples(bounce, lanes, light_position_, light_normal_);
     shadow_.count = 0;
-    for (std::size_t lane = 0; lane < lanes;) {
-      const std::uint32_t point = lane_point_[lane];
-      std::size_t end = lane + 1;
-      while (end < lanes && lane_point_[end] == point) ++end;
-      if (plain_[point]) {
-        append_direct_light({&rays_, &surfaces_, &throughput_}, point, light_, lane, end - lane, direct, shadow_);
+    for (const Run& run : runs_) {
+      if (plain_[run.point]) {
+        append_direct_light({&rays_, &surfaces_, &throughput_}, run.point, light_, run.first, run.count, direct, shadow_);
       } else {
-        for (std::size_t k = lane; k < end; ++k) append_general(point, k);
+        for (std::size_t k = run.first; k < run.first + run.count; ++k) append_general(run.point, k);
       }
-      lane = end;
     }
+    runs_.clear();
     trace_shadows(bounce);
     lanes = 0;
   };
   for (std::size_t i = 0; i < alive_; ++i) {
     if (!shaded_[i] || (!plain_[i] && bsdf_[i].is_delta())) continue;
     const std::uint32_t slot = slot_[i], key = key_[slot], first_index = sample_[slot] * samples;
-    const Vec3 position = load(surfaces_.position, i), normal = load(surfaces_.geometric_normal, i);
-    for (std::uint32_t k = 0; k < samples; ++k) {
-      scratch_key_[lanes] = key;
-      scratch_index_[lanes] = first_index + k;
-      lane_point_[lanes] = static_cast<std::uint32_t>(i);
-      store(light_position_, lanes, position);
-      store(light_normal_, lanes, normal);
-      if (++lanes == kLightChunk) flush();
+    for (std::uint32_t k = 0; k < samples;) {
+      // As many samples of the point as the chunk still takes.
+      const std::size_t run = std::min<std::size_t>(samples - k, kLightChunk - lanes);
+      std::fill_n(scratch_key_.data() + lanes, run, key);
+      std::iota(scratch_index_.data() + lanes, scratch_index_.data() + lanes + run, first_index + k);
+      fill(light_position_, lanes, run, load(surfaces_.position, i));
+      fill(light_normal_, lanes, run, load(surfaces_.geometric_normal, i));
+      runs_.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(lanes), static_cast<std::uint32_t>(run)});
+      lanes += run, k += static_cast<std::uint32_t>(run);
+      if (lanes == kLightChunk) flush();
     }
   }
   flush();
@@ -296,8 +301,16 @@ void PathKernel::trace_shadows(std::uint32_t bounce) {
   shadow_.rays.size = shadow_.count;
   const bool coherent = bounce == 0;
   world_.tracer().occluded(shadow_.rays, std::span(occluded_), coherent ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
-  for (std::size_t r = 0; r < shadow_.count; ++r) {
-    if (!occluded_[r]) add_radiance(slot_[shadow_.point[r]], bounce == 0, load(shadow_.contribution, r));
+  // Samples of one point stand side by side: sum them before going to the path.
+  std::vector<Color>& radiance = bounce == 0 ? direct_ : indirect_;
+  for (std::size_t r = 0; r < shadow_.count;) {
+    const std::uint32_t point = shadow_.point[r];
+    Color sum(0);
+    for (; r < shadow_.count && shadow_.point[r] == point; ++r) {
+      const float visible = occluded_[r] ? 0.f : 1.f;
+      sum += visible * load(shadow_.contribution, r);
+    }
+    radiance[slot_[point]] += sum;
   }
 }
 

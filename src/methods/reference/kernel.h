@@ -81,7 +81,11 @@ class PathKernel {
   AlignedVector<std::uint32_t> scratch_key_, scratch_index_;
   AlignedVector<float> u0_, u1_, u2_, u3_, pdf_;
   AlignedVector<std::uint8_t> plain_;  ///< shaded and plain: the vector path
-  std::vector<std::uint32_t> lane_point_;
+  /// Lanes of a light batch that belong to one point.
+  struct Run {
+    std::uint32_t point, first, count;
+  };
+  std::vector<Run> runs_;
   Vec3Batch light_position_, light_normal_, wi_;
   LightSampleBatch light_;
   ShadowLanes shadow_;

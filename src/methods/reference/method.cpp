@@ -1,8 +1,10 @@
 #include "methods/reference/method.h"
 
+#include <memory>
 #include <optional>
+#include <vector>
 
-#include "base/sample/sobol.h"
+#include "base/parallel/parallel.h"
 #include "methods/reference/kernel.h"
 #include "methods/reference/settings.h"
 #include "methods/tile_loop.h"
@@ -49,9 +51,12 @@ void ReferenceMethod::render_pass(const RenderJob& job, SampleRange range, Frame
   if (options.one_hit)
     centred.emplace(job.view->camera(), IVec2(job.view->width(), job.view->height()), PixelFilter(PixelFilter::Kind::centre));
   const View& view = centred ? *centred : *job.view;
+  // One kernel a thread: its arrays are too large to be made anew for every tile.
+  std::vector<std::unique_ptr<PathKernel>> kernels(static_cast<std::size_t>(context.thread_count()));
   for_each_tile(context, frame, range, statistics, [&](const Tile& tile, SampleRange samples, PassStatistics& local) {
-    PathKernel kernel(*job.world, view, options);
-    kernel.render_tile(tile, samples, frame, local);
+    std::unique_ptr<PathKernel>& kernel = kernels[static_cast<std::size_t>(worker_index()) % kernels.size()];
+    if (!kernel) kernel = std::make_unique<PathKernel>(*job.world, view, options);
+    kernel->render_tile(tile, samples, frame, local);
   });
 }
 

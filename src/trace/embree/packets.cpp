@@ -13,8 +13,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // By BatchKind: primary, shadow, shadow_diffuse, bounce. No coherent packets: with that flag Embree 3.13.5's 16-wide occlusion queries do
 // not return from scenes with instances (seen with mirrored and stretched ones).
 // TODO(packet-width): measure the flag and the widths on scenes without instances; until then the choice is a careful guess.
-constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, false}, {8, false}, {1, false}, {1, false}}};
-constexpr std::array<CallStyle, 4> kOccludedStyles{{{16, false}, {8, false}, {1, false}, {1, false}}};
+constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, true}, {16, false}, {16, false}, {16, false}}};
+constexpr std::array<CallStyle, 4> kOccludedStyles{{{16, false}, {16, false}, {16, false}, {16, false}}};
 
 CallStyle fit(CallStyle style, int native_width) {
   while (style.width > native_width) style.width = style.width == 16 ? 8 : 1;

@@ -42,6 +42,8 @@ TEST(Sobol, VectorVersionEqualsTheScalarDefinition) {
       ASSERT_EQ(u[i], expected.x);
       ASSERT_EQ(v[i], expected.y);
     }
+    sobol_1d(keys.data(), indices.data(), pair, kCount, v.data());
+    for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(v[i], u[i]);
   }
 }
 

@@ -1,0 +1,106 @@
+#include "world/triangle_lanes.h"
+
+#include "world/surface_records.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "world/triangle_lanes.cpp"
+#include "base/simd/targets.h"
+
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, kLanes>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+struct V3 {
+  V x, y, z;
+};
+
+HWY_INLINE V3 load3(D d, const float (*axes)[kLanes], std::size_t i) {
+  return {hn::Load(d, axes[0] + i), hn::Load(d, axes[1] + i), hn::Load(d, axes[2] + i)};
+}
+HWY_INLINE V3 sub(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE V3 add(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+HWY_INLINE V3 mul(const V3& a, V s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
+HWY_INLINE V dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
+HWY_INLINE V max_abs(const V3& a) { return hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z))); }
+HWY_INLINE V3 cross(const V3& a, const V3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+HWY_INLINE void store3(D d, M m, const V3& v, Vec3Batch& batch, std::size_t i) {
+  hn::BlendedStore(v.x, m, d, batch.x.data() + i), hn::BlendedStore(v.y, m, d, batch.y.data() + i);
+  hn::BlendedStore(v.z, m, d, batch.z.data() + i);
+}
+HWY_INLINE M in_range(D d, V length2) { return hn::And(hn::Gt(length2, hn::Set(d, 1e-30f)), hn::Lt(length2, hn::Set(d, 1e30f))); }
+
+HWY_INLINE M mask_of(D d, std::uint16_t bits, std::size_t i) {
+  const hn::RebindToUnsigned<D> du;
+  const auto lane = hn::Iota(du, static_cast<std::uint32_t>(i));
+  const auto bit = hn::Shl(hn::Set(du, 1u), lane);
+  return hn::RebindMask(d, hn::Ne(hn::And(hn::Set(du, bits), bit), hn::Zero(du)));
+}
+
+// The same operations in the same order as reconstruct_triangle, so that both give the same bits.
+std::uint16_t ReconstructLanes(const TriangleLanes& lanes, const float* HWY_RESTRICT u, const float* HWY_RESTRICT v, std::size_t begin,
+                               SurfaceBatch& surfaces) {
+  const D d;
+  std::uint16_t left = 0;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const M active = mask_of(d, lanes.active, i);
+    if (hn::AllFalse(d, active)) continue;
+    const V bu = hn::Load(d, u + begin + i), bv = hn::Load(d, v + begin + i), one = hn::Set(d, 1.f);
+    const V3 p0 = load3(d, lanes.p[0], i);
+    const V3 edge1 = sub(load3(d, lanes.p[1], i), p0), edge2 = sub(load3(d, lanes.p[2], i), p0);
+    const V3 position = add(p0, add(mul(edge1, bu), mul(edge2, bv)));
+    const V size = hn::Max(max_abs(edge1), max_abs(edge2));
+    const V error = hn::Mul(hn::Set(d, kRounding),
+                            hn::Add(hn::Mul(hn::Set(d, kPointRoundings), max_abs(position)), hn::Mul(hn::Set(d, kEdgeRoundings), size)));
+    const V3 n = cross(edge1, edge2);
+    const V length2 = dot(n, n);
+    const M usable = hn::And(active, in_range(d, length2));
+    const V3 geometric = mul(mul(n, hn::Div(one, hn::Sqrt(length2))), hn::Load(d, lanes.winding + i));
+
+    V3 shading = geometric;
+    const M smooth = hn::And(usable, mask_of(d, lanes.smooth, i));
+    if (!hn::AllFalse(d, smooth)) {
+      const V bw = hn::Sub(hn::Sub(one, bu), bv);
+      const V3 m = add(add(mul(load3(d, lanes.n[0], i), bw), mul(load3(d, lanes.n[1], i), bu)), mul(load3(d, lanes.n[2], i), bv));
+      const V m2 = dot(m, m);
+      const V side = hn::IfThenElse(hn::Lt(dot(m, geometric), hn::Zero(d)), hn::Set(d, -1.f), one);
+      const V3 unit = mul(m, hn::Div(side, hn::Sqrt(m2)));
+      const M good = hn::And(smooth, in_range(d, m2));
+      shading = {hn::IfThenElse(good, unit.x, shading.x), hn::IfThenElse(good, unit.y, shading.y), hn::IfThenElse(good, unit.z, shading.z)};
+    }
+    store3(d, usable, position, surfaces.position, begin + i);
+    store3(d, usable, geometric, surfaces.geometric_normal, begin + i);
+    store3(d, usable, shading, surfaces.shading_normal, begin + i);
+    hn::BlendedStore(error, usable, d, surfaces.error.data() + begin + i);
+
+    alignas(kCacheLine) std::uint8_t bits[8] = {};
+    const std::size_t bytes = hn::StoreMaskBits(d, hn::AndNot(usable, active), bits);
+    for (std::size_t b = 0; b < bytes; ++b) left = static_cast<std::uint16_t>(left | (bits[b] << (i + 8 * b)));
+  }
+  return left;
+}
+
+}  // namespace sightline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+HWY_EXPORT(ReconstructLanes);
+
+std::uint16_t reconstruct_lanes(const TriangleLanes& lanes, const float* u, const float* v, std::size_t begin, SurfaceBatch& surfaces) {
+  return HWY_DYNAMIC_DISPATCH(ReconstructLanes)(lanes, u, v, begin, surfaces);
+}
+
+}  // namespace sightline
+#endif

@@ -1,0 +1,25 @@
+// Triangle hits of world-space meshes, 16 at a time: what surface_batch.cpp computes for most hits of most scenes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/core/aligned.h"
+#include "world/surface.h"
+
+namespace sightline {
+
+/// Corners and shading normals of 16 triangles, gathered. Lanes not in `active` hold anything.
+struct alignas(kCacheLine) TriangleLanes {
+  float p[3][3][kLanes];  ///< corner, axis, lane
+  float n[3][3][kLanes];
+  float winding[kLanes];
+  std::uint16_t active = 0;  ///< bit i: lane i is to be computed
+  std::uint16_t smooth = 0;  ///< bit i: it has shading normals
+};
+
+/// Writes position, error and both normals of the active lanes of [begin, begin + 16) and returns those whose normal left the range of
+/// float products and must be done by the scalar definition (reconstruct_triangle).
+std::uint16_t reconstruct_lanes(const TriangleLanes& lanes, const float* u, const float* v, std::size_t begin, SurfaceBatch& surfaces);
+
+}  // namespace sightline
