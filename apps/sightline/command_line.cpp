@@ -89,16 +89,19 @@ void add_render_lights(CLI::App& app, RenderCommand& r) {
       ->type_name("TEXT")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--light-point", r.lights.point, "\"X,Y,Z R,G,B\" (intensity); repeatable")
       ->type_name("TEXT")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--light-directional", r.lights.directional, "\"DX,DY,DZ R,G,B\" (irradiance); repeatable")
       ->type_name("TEXT")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->group(group);
   app.add_flag("!--no-default-light", r.lights.default_light, "leave a scene without lights dark")->group(group);
 }
@@ -113,6 +116,7 @@ void add_render_method(CLI::App& app, RenderCommand& r) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->group(group);
   add_optional(app, "--visibility", r.render.visibility, "how visibility is answered (default: the method's own)", "NAME")->group(group);
   add_optional(app, "--spp", r.render.spp, "samples a pixel (default: the scene's, else the method's)", "N")
@@ -160,6 +164,7 @@ void add_render_output(CLI::App& app, RenderCommand& r) {
       ->type_name("FILE")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->required()
       ->group(group);
   app.add_option("--aov", r.aovs, "layers for EXR: albedo,normal,position,depth,surface,direct,indirect,variance or all")
@@ -238,7 +243,8 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   compare->add_option("--fail-over", line.compare.fail_over, "exit with 6 if a metric is worse than VALUE; repeatable")
       ->type_name("METRIC=VALUE")
       ->take_all()
-      ->expected(1);
+      ->expected(1)
+      ->allow_extra_args(false);
 
   CLI::App* methods = app.add_subcommand("methods", "the methods and their settings");
   methods->add_option("NAME", line.methods.name, "one method or visibility");
@@ -253,7 +259,8 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   bench->add_option("--view", line.bench.views, "a standard view instead of the suite's own; repeatable")
       ->type_name("NAME")
       ->take_all()
-      ->expected(1);
+      ->expected(1)
+      ->allow_extra_args(false);
   bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
@@ -272,6 +279,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
       ->type_name("FILE")
       ->take_all()
       ->expected(1)
+      ->allow_extra_args(false)
       ->required();
   merge->add_option("--exposure", line.merge.exposure_ev, "stops, for 8-bit outputs")->type_name("EV");
   merge->add_option("--tonemap", line.merge.tonemap, "srgb, reinhard, aces or filmic")->type_name("NAME");

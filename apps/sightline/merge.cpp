@@ -26,6 +26,8 @@ int run_merge(const CommandLine& line, Context& context) {
     slices.push_back(decode_frame(read_file(path), path));
     if (slices.back().identity.text != slices.front().identity.text)
       throw usage_error("the slices belong to different pictures: scene, view, settings, seed or SIMD target differ").at(path);
+    if (slices.back().frame.aovs().bits() != slices.front().frame.aovs().bits())
+      throw usage_error("the slices have different layers").at(path);
   }
   // Slices that overlap would count samples twice.
   std::sort(slices.begin(), slices.end(),

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests of the command line as users meet it. Usage: cli_test.py PROGRAM [CLASS...]; cli_test.py --expect-groups CLASS..."""
+import itertools
 import json
 import math
 import os
@@ -46,7 +47,7 @@ class Usage(ProgramTest):
     def test_wrong_usage_is_2_with_one_line(self):
         self.fails(2)
         self.fails(2, "rendr", says="'render'")
-        self.fails(2, "render", "builtin:cornell", "--siez", "3x3", "-o", "a.exr", says="--size")
+        self.fails(2, "render", "builtin:cornell", "--exposre", "3", "-o", "a.exr", says="'--exposure'")
         self.fails(2, "render", "builtin:cornell", says="--output")
         self.fails(2, "render", "-o", "a.exr", says="SCENE")
         self.fails(2, "compare", "a.exr")
@@ -65,7 +66,7 @@ class Usage(ProgramTest):
     def test_options_and_scene_in_any_order(self):
         arguments = [["builtin:cornell"], ["--size", "16x12"], ["-o", "a.exr"], ["--spp", "1"], ["--set", "mode=path"]]
         pictures = set()
-        for order in (arguments, arguments[::-1], arguments[2:] + arguments[:2], arguments[1:] + arguments[:1]):
+        for order in itertools.permutations(arguments):
             self.ok("render", *sum(order, []))
             pictures.add(exr_pixels((self.folder / "a.exr").read_bytes()))
         self.assertEqual(len(pictures), 1)
@@ -219,7 +220,7 @@ class Outputs(ProgramTest):
 
     def test_unwritable_places(self):
         # Root may write anywhere but where the file system itself says no.
-        self.fails(4, "render", "builtin:cornell", *self.LONG, "-o", "/proc/sightline.exr", says="/proc/sightline.exr")
+        self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "/proc/sightline.exr", says="/proc/sightline.exr")
         if os.geteuid() != 0:
             locked = self.folder / "locked"
             locked.mkdir()
@@ -228,8 +229,7 @@ class Outputs(ProgramTest):
 
     def test_full_disk(self):
         (self.folder / "full.exr").symlink_to("/dev/full")
-        run = self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "full.exr", says="full.exr")
-        self.assertIn("No space left", run.err)
+        self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "full.exr", says="No space left")
         self.assertEqual(self.files(), ["full.exr"])
         with open("/dev/full", "wb") as full:
             self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "exr:-", stdout=full, says="standard output")
@@ -238,7 +238,7 @@ class Outputs(ProgramTest):
 
     def test_one_failed_output_does_not_cost_the_others(self):
         (self.folder / "full.exr").symlink_to("/dev/full")
-        self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "full.exr", "-o", "a.png", "--stats", "a.json", says="full.exr")
+        self.fails(4, "render", "builtin:cornell", "--size", "16x12", "--spp", "1", "-o", "full.exr", "-o", "a.png", "--stats", "a.json", says="/dev/full")
         self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (16, 12))
         self.assertEqual(self.json("a.json")["stop"], "samples")
 
@@ -545,8 +545,8 @@ class Statistics(ProgramTest):
                 self.assertEqual(run.code, 2)
 
     def test_settings_are_recorded(self):
-        self.render("-o", "a.png", "--stats", "a.json", "--set", "mode=direct")
-        self.assertEqual(self.json("a.json")["settings"]["mode"], "direct")
+        self.render("-o", "a.png", "--stats", "a.json", "--set", "mode=path")
+        self.assertEqual(self.json("a.json")["settings"]["mode"], "path")
 
 
 class Progress(ProgramTest):
