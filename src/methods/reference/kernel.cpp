@@ -252,6 +252,8 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
   for (std::size_t i = 0; i < alive_; ++i) {
     if (!shaded_[i] || (!plain_[i] && bsdf_[i].is_delta())) continue;
     const std::uint32_t slot = slot_[i], key = key_[slot], first_index = sample_[slot] * samples;
+    // Where a point's samples are cut decides how their sum is rounded: at places that depend on nothing but their number.
+    if (lanes + samples > kLightChunk) flush();
     for (std::uint32_t k = 0; k < samples;) {
       // As many samples of the point as the chunk still takes.
       const std::size_t run = std::min<std::size_t>(samples - k, kLightChunk - lanes);
