@@ -133,7 +133,7 @@ void gather(const InstanceRecord& record, std::uint32_t primitive, std::size_t l
   if (!record.normals) return;
   lanes.smooth = static_cast<std::uint16_t>(lanes.smooth | bit);
   for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& n = record.normals[t[corner]];
+    const Vec3 n = record.transforms_normals ? record.normal_matrix * record.normals[t[corner]] : record.normals[t[corner]];
     lanes.n[corner][0][lane] = n.x, lanes.n[corner][1][lane] = n.y, lanes.n[corner][2][lane] = n.z;
   }
 }
@@ -150,7 +150,7 @@ void reconstruct_block(const SurfaceTables& tables, const LightTable& lights, co
       reconstruct_sphere(tables, lights, rays, hits, i, surfaces);
     } else {
       const InstanceRecord& record = tables.instances[instance];
-      if (record.transforms || record.transforms_normals)
+      if (record.transforms)
         reconstruct_triangle(tables, hits, i, surfaces);
       else
         gather(record, hits.primitive[i], i - begin, lanes);

@@ -179,7 +179,7 @@ void PathKernel::evaluate_materials(std::uint32_t bounce) {
     const SurfaceDetail detail = world_.detail(rays_, hits_, i, cone_width_[i] + cone_spread_[i] * hits_.t[i]);
     float u_mix = mix ? u1_[i] : 0.f;
     const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
-    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric);
+    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
     // A shading normal that faces away from the viewer would make the surface black or transparent: fall back to the geometric one.
     if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
     bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
@@ -317,8 +317,14 @@ void PathKernel::trace_shadows(std::uint32_t bounce) {
 }
 
 void PathKernel::scatter(std::uint32_t bounce) {
-  for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
-  sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
+  bool all_plain = true;
+  for (std::size_t i = 0; i < alive_; ++i) {
+    scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+    all_plain &= plain_[i] || !shaded_[i];
+  }
+  // Plain surfaces have one lobe; its number, and the roulette's, are drawn only where someone reads them.
+  if (!all_plain || static_cast<int>(bounce) >= options_.roulette_start)
+    sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());
 
   sample_lambert({&rays_, &surfaces_, &throughput_}, u2_.data(), u3_.data(), alive_, wi_, pdf_.data());

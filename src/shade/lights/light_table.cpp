@@ -153,12 +153,17 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
     if (picked == 0) return scalar(begin, count);
     for (std::size_t at = 0; at < picked; at += group) {
       const std::size_t n = std::min(group, picked - at);
-      const auto [least, greatest] =
-          std::minmax_element(light.begin() + static_cast<std::ptrdiff_t>(at), light.begin() + static_cast<std::ptrdiff_t>(at + n));
+      // Which kinds a group holds shows in its range of entries; where there is but one kind, nothing needs to be looked at.
+      std::uint32_t least = 0, greatest = static_cast<std::uint32_t>(lists.size() - 1);
+      if (!lists.is_all_one_kind()) {
+        const auto [low, high] =
+            std::minmax_element(light.begin() + static_cast<std::ptrdiff_t>(at), light.begin() + static_cast<std::ptrdiff_t>(at + n));
+        least = *low, greatest = *high;
+      }
       LightLanes lanes = lanes_from(begin + at, n);
       lanes.light = light.data() + at;
       lanes.selection = probability.data() + at;
-      const std::size_t done = impl_->sample_lanes(lanes, *least, *greatest, u0, u1, begin + at, samples);
+      const std::size_t done = impl_->sample_lanes(lanes, least, greatest, u0, u1, begin + at, samples);
       const std::size_t first = begin + at;
       one_by_one(first + done, first + n,
                  [&](std::size_t i) { return impl_->sample_light(light[i - begin], probability[i - begin], place(i), {u0[i], u1[i]}); });

@@ -33,6 +33,7 @@ class EmbreeTracer final : public Tracer {
     scenes_.static_scene = static_ ? static_->get() : nullptr;
     scenes_.top_scene = top_ ? top_->get() : nullptr;
     scenes_.masks = &masks_;
+    scenes_.coarse = statistics_.static_triangles <= kCoarseTriangles;
     const std::vector<std::uint32_t>& table = scenes_.tables.static_instances;
     scenes_.static_is_identity = true;
     for (std::size_t i = 0; i < table.size(); ++i) scenes_.static_is_identity = scenes_.static_is_identity && table[i] == i;
@@ -40,12 +41,12 @@ class EmbreeTracer final : public Tracer {
 
   void intersect(const RayBatch& rays, HitBatch& hits, BatchKind kind, RayCounts& counts) const override {
     hits.resize(rays.size);
-    intersect_batch(scenes_, rays, hits, intersect_style(kind, device_->native_width()));
+    intersect_batch(scenes_, rays, hits, intersect_style(kind, scenes_, device_->native_width()));
     counts.closest += rays.size;
   }
 
   void occluded(const RayBatch& rays, std::span<std::uint8_t> occluded, BatchKind kind, RayCounts& counts) const override {
-    occluded_batch(scenes_, rays, occluded, occluded_style(kind, device_->native_width()));
+    occluded_batch(scenes_, rays, occluded, occluded_style(kind, scenes_, device_->native_width()));
     counts.occlusion += rays.size;
   }
 

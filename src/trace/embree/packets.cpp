@@ -10,11 +10,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// By BatchKind: primary, shadow, shadow_diffuse, bounce. No coherent packets: with that flag Embree 3.13.5's 16-wide occlusion queries do
-// not return from scenes with instances (seen with mirrored and stretched ones).
-// TODO(packet-width): measure the flag and the widths on scenes without instances; until then the choice is a careful guess.
+// By BatchKind: primary, shadow, shadow_diffuse, bounce; the fastest of single, 8- and 16-wide calls with either flag in `sightline bench
+// trace`. Coherent packets of shadow rays pay where triangles are large beside the packet (Sponza: 1.5 times the rays), and cost up to half
+// the speed where they are fine (hairball), so those have a table for each class of geometry. Both give the same answers.
 constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, true}, {16, false}, {16, false}, {16, false}}};
 constexpr std::array<CallStyle, 4> kOccludedStyles{{{16, false}, {16, false}, {16, false}, {16, false}}};
+constexpr std::array<CallStyle, 4> kOccludedStylesCoarse{{{16, true}, {16, true}, {16, false}, {16, false}}};
 
 CallStyle fit(CallStyle style, int native_width) {
   while (style.width > native_width) style.width = style.width == 16 ? 8 : 1;
@@ -192,8 +193,17 @@ void occluded_singles(const EmbreeScenes& scenes, const RayBatch& rays, std::uin
 
 }  // namespace
 
-CallStyle intersect_style(BatchKind kind, int native_width) { return fit(kIntersectStyles[static_cast<std::size_t>(kind)], native_width); }
-CallStyle occluded_style(BatchKind kind, int native_width) { return fit(kOccludedStyles[static_cast<std::size_t>(kind)], native_width); }
+CallStyle intersect_style(BatchKind kind, const EmbreeScenes& scenes, int native_width) {
+  CallStyle style = kIntersectStyles[static_cast<std::size_t>(kind)];
+  style.coherent = style.coherent && !scenes.top_scene;
+  return fit(style, native_width);
+}
+
+CallStyle occluded_style(BatchKind kind, const EmbreeScenes& scenes, int native_width) {
+  CallStyle style = (scenes.coarse ? kOccludedStylesCoarse : kOccludedStyles)[static_cast<std::size_t>(kind)];
+  style.coherent = style.coherent && !scenes.top_scene;
+  return fit(style, native_width);
+}
 
 void intersect_batch(const EmbreeScenes& scenes, const RayBatch& rays, HitBatch& hits, CallStyle style) {
   EmbreeQuery query(style.coherent, scenes.masks, &scenes.tables);

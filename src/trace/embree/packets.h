@@ -22,12 +22,17 @@ struct EmbreeScenes {
   RTCScene static_scene = nullptr, top_scene = nullptr;
   GeometryTables tables;
   bool static_is_identity = false;  ///< static_instances[i] == i
+  bool coarse = false;              ///< few triangles: each is large beside a packet of neighbouring rays
   const AlphaMasks* masks = nullptr;
 };
 
-/// The style for a kind of batch: fixed tables, so that equal runs make equal calls.
-CallStyle intersect_style(BatchKind kind, int native_width);
-CallStyle occluded_style(BatchKind kind, int native_width);
+/// Scenes with at most this many triangles count as coarse.
+inline constexpr std::uint64_t kCoarseTriangles = std::uint64_t{1} << 18;
+
+/// The style for a kind of batch: fixed tables, so that equal runs make equal calls. Never coherent on a scene with instances: Embree
+/// 3.13.5 then may not return from rtcOccluded16.
+CallStyle intersect_style(BatchKind kind, const EmbreeScenes& scenes, int native_width);
+CallStyle occluded_style(BatchKind kind, const EmbreeScenes& scenes, int native_width);
 
 void intersect_batch(const EmbreeScenes& scenes, const RayBatch& rays, HitBatch& hits, CallStyle style);
 void occluded_batch(const EmbreeScenes& scenes, const RayBatch& rays, std::span<std::uint8_t> occluded, CallStyle style);
