@@ -28,8 +28,8 @@ fuzz_one() {
   local name=$1 limit_mib=2048
   mkdir -p "$build/corpus/$name" "$build/seeds/$name"
   # A reader may take a small multiple of its input; with inputs below 64 KiB, 2 GiB with the sanitizers' own is far beyond that. One input
-  # may take 10 s under the sanitizers.
-  if "$build/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=$limit_mib -malloc_limit_mb=512 -max_len=65536 \
+  # may take 30 s under the sanitizers on a loaded machine; the seed is fixed so that runs start alike.
+  if "$build/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=30 -seed=1 -rss_limit_mb=$limit_mib -malloc_limit_mb=512 -max_len=65536 \
     -artifact_prefix="$build/crashes/$name-" -print_final_stats=1 "$build/corpus/$name" "$build/seeds/$name" >"$build/logs/$name.log" 2>&1; then
     echo "fuzz $name: $(grep -o 'number_of_executed_units: .*' "$build/logs/$name.log" | cut -d' ' -f2) inputs, no failure"
   else
