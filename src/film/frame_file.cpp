@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/core/error.h"
 
@@ -21,6 +22,18 @@ struct Prefix {
 };
 
 std::uint64_t checksum_of(std::span<const std::byte> body) { return XXH64(body.data(), body.size(), 1); }
+
+// A whole number of the header, or nothing if it is missing, of another type or above `maximum`.
+std::optional<std::uint64_t> number(const nlohmann::json& header, const char* key, std::uint64_t maximum) {
+  const auto found = header.find(key);
+  if (found == header.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > maximum) return std::nullopt;
+  return found->get<std::uint64_t>();
+}
+
+std::string text(const nlohmann::json& header, const char* key) {
+  const auto found = header.find(key);
+  return found != header.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
 
 std::size_t raw_size(const Frame& frame) {
   std::size_t size = frame.tile_count() * sizeof(std::uint32_t);
@@ -75,25 +88,27 @@ StoredFrame decode_frame(std::span<const std::byte> bytes, const std::string& na
   const auto* header_text = reinterpret_cast<const char*>(body.data());
   const nlohmann::json header = nlohmann::json::parse(header_text, header_text + prefix.header_bytes, nullptr, false);
   if (!header.is_object()) throw fail("frame header is not JSON");
-  const std::int64_t width = header.value("width", std::int64_t{0}), height = header.value("height", std::int64_t{0});
-  const std::int64_t layers = header.value("layers", std::int64_t{0});
-  if (width <= 0 || height <= 0 || width > 65536 || height > 65536 || layers < 0 || layers >= (std::int64_t{1} << kAovCount))
+  const auto width = number(header, "width", 65536), height = number(header, "height", 65536);
+  const auto layers = number(header, "layers", (std::uint64_t{1} << kAovCount) - 1), first_sample = number(header, "first_sample", ~0u);
+  // Pixel numbers are 32-bit.
+  if (!width || !height || !layers || !first_sample || *width * *height == 0 || *width * *height > 0x7fffffff)
     throw fail("frame header is out of range");
 
   // The decompressed size must be what the header's dimensions demand before anything of that size is allocated.
   std::size_t channels = 0;
-  const AovSet aovs = AovSet::from_bits(static_cast<std::uint32_t>(layers));
+  const AovSet aovs = AovSet::from_bits(static_cast<std::uint32_t>(*layers));
   for (const AovInfo& info : aov_table()) channels += aovs.has(info.id) ? info.channels.size() : 0;
-  const std::uint64_t pixel_bytes = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * channels * sizeof(ExactSum);
+  const std::uint64_t pixel_bytes = *width * *height * channels * sizeof(ExactSum);
   const std::span<const std::byte> payload = body.subspan(prefix.header_bytes);
   const unsigned long long content = ZSTD_getFrameContentSize(payload.data(), payload.size());
+  // Nothing packs better than zstd's runs, about 128 KiB in 4 bytes: what claims more is made up.
   if (content == ZSTD_CONTENTSIZE_ERROR || content == ZSTD_CONTENTSIZE_UNKNOWN || content < pixel_bytes ||
-      content > pixel_bytes + (pixel_bytes >> 4) + 4096)
+      content > pixel_bytes + (pixel_bytes >> 4) + 4096 || content / 40000 > payload.size())
     throw fail("frame payload does not fit its header");
 
-  StoredFrame stored{Frame(static_cast<int>(width), static_cast<int>(height), aovs, header.value("first_sample", 0u)),
-                     {header.value("identity", std::string())},
-                     header.value("note", std::string())};
+  StoredFrame stored{Frame(static_cast<int>(*width), static_cast<int>(*height), aovs, static_cast<std::uint32_t>(*first_sample)),
+                     {text(header, "identity")},
+                     text(header, "note")};
   std::vector<std::byte> raw(raw_size(stored.frame));
   if (raw.size() != content) throw fail("frame payload does not fit its header");
   const std::size_t unpacked = ZSTD_decompress(raw.data(), raw.size(), payload.data(), payload.size());

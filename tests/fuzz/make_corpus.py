@@ -175,6 +175,14 @@ def ply():
     return files
 
 
+def frame():
+    """A checkpoint of 2 x 1 pixels in an uncompressed zstd block; the fuzz target mends the checksum, which is 0 here."""
+    header = json.dumps({"width": 2, "height": 1, "layers": 1, "first_sample": 0, "identity": "i", "note": "{}", "nonfinite": 0}).encode()
+    raw = struct.pack("<I", 1) + struct.pack("<qQ", 0, 1 << 63) * 6
+    payload = struct.pack("<IBB", 0xFD2FB528, 0x20, len(raw)) + struct.pack("<I", len(raw) << 3 | 1)[:3] + raw
+    return b"SLFRAME1" + struct.pack("<QQQ", len(header), len(payload), 0) + header + payload
+
+
 SEEDS = {
     "image_png": {f"{depth}-{kind}.png": png(depth, kind) for depth, kind in ((8, 2), (8, 6), (16, 2), (8, 0), (1, 0), (2, 3), (8, 4))},
     "image_exr": {"none-float.exr": exr(0, 2), "zip-half.exr": exr(3, 1)},
@@ -186,6 +194,7 @@ SEEDS = {
     "pbrt": {"all.pbrt": PBRT},
     "obj": {"square.obj": OBJ},
     "ply": ply(),
+    "frame": {"tiny.frame": frame()},
 }
 
 
