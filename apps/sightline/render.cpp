@@ -126,6 +126,7 @@ StopReason render_frame(const Sequence& sequence, int frame_number, const Stopwa
   result.seconds.build = build_seconds;
   sequence.console.finish();
   warn_bad_samples(result.frame, context);
+  if (result.frame.samples_done() == 0) context.warn("not every part of the picture has a sample: it was ended within its first pass");
   if (result.stop == StopReason::interrupted && (!sequence.one_frame || command.skip_existing)) return result.stop;
 
   const Stopwatch write_watch;

@@ -18,6 +18,8 @@ PassWatch::PassWatch(const Context& user, std::optional<double> seconds_left, do
   // Beyond a year, a time limit is none (and would not fit the clock).
   if (seconds_left && *seconds_left < 3e7)
     deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds_left));
+  // A deadline that has passed already is no race against the first pass.
+  if (deadline_ && Clock::now() >= *deadline_) context_.cancelled.store(true);
   thread_ = std::thread([this] { watch(); });
 }
 

