@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import pty
 import re
 import signal
 import stat
@@ -89,8 +90,30 @@ class Usage(ProgramTest):
         b = json.loads(self.ok("info", "--json", "builtin:hairball?triangles=3000").out)
         self.assertEqual(a["triangles"], b["triangles"])
 
-    def test_no_color_and_no_escapes_in_files(self):
-        run = self.ok("render", "builtin:furnace", "--size", "8x8", "--spp", "1", "-o", "a.png", env=environment(NO_COLOR="1", TERM="xterm"))
+    def on_terminal(self, **env):
+        """What a terminal would be sent by a run that warns (there is no light)."""
+        (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        master, slave = pty.openpty()
+        process = subprocess.Popen([program.PROGRAM, "render", "a.obj", "--size", "8x8", "--spp", "1", "-o", "a.png"], cwd=self.folder,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=slave, env=environment(TERM="xterm", **env))
+        os.close(slave)
+        text = b""
+        try:
+            while piece := os.read(master, 65536):
+                text += piece
+        except OSError:  # the other end is closed
+            pass
+        os.close(master)
+        self.assertEqual(process.wait(60), 0)
+        return text.decode()
+
+    def test_colour_only_on_terminals_that_want_it(self):
+        self.assertIn("\033[33mwarning:", self.on_terminal())
+        plain = self.on_terminal(NO_COLOR="1")
+        self.assertIn("warning:", plain)
+        self.assertNotIn("\033[33m", plain)
+        run = self.ok("render", "a.obj", "--size", "8x8", "--spp", "1", "-o", "a.png")
+        self.assertIn("warning:", run.err)
         self.assertNotIn("\033", run.err)
 
     def test_quiet_says_nothing(self):
