@@ -18,23 +18,24 @@ namespace {
 const char* const kScenes[] = {"cornell", "glass", "textured", "hairball,triangles=3000", "spheres"};
 constexpr IVec2 kSize{150, 100};
 
-/// Threads that finished a tile. The first ones are held up a little, so that the others come to work before all is done.
+/// Threads that finished a tile. Until all have been seen each report takes a while, so that the others come to work before the tiles are
+/// used up, however busy the machine.
 class ThreadCensus {
  public:
-  explicit ThreadCensus(Context& context) {
+  explicit ThreadCensus(Context& context) : expected_(static_cast<std::size_t>(context.threads)) {
     context.progress = [this](const Progress& progress) {
       if (progress.phase != "render") return;
       const std::lock_guard lock(mutex_);
       ids_.insert(std::this_thread::get_id());
-      if (++reports_ <= 12) std::this_thread::sleep_for(std::chrono::milliseconds(4));
+      if (ids_.size() < expected_) std::this_thread::sleep_for(std::chrono::milliseconds(25));
     };
   }
   std::size_t count() const { return ids_.size(); }
 
  private:
+  std::size_t expected_;
   std::mutex mutex_;
   std::set<std::thread::id> ids_;
-  int reports_ = 0;
 };
 
 Exposure exposure() { return {.spp = 6, .max_bounces = 4, .seed = 11, .filter = PixelFilter::Kind::gaussian, .aovs = parse_aovs("all")}; }
@@ -57,14 +58,20 @@ TEST(SamePicture, AnyNumberOfThreadsGivesTheSameBytes) {
     const Shot shot = shot_of(builtin_scene(name), kSize);
     std::optional<Picture> single;
     for (const int threads : {1, 2, 7}) {
-      Context context;
-      context.seed = 11;
-      context.threads = threads;
-      ThreadCensus census(context);
+      // A busy machine may keep a thread away until all is done: then once more.
       Picture picture{empty_frame(shot, exposure()), {}};
-      ASSERT_GE(picture.frame.tile_count(), 20u);
-      expose_range(shot, exposure(), {0, 6}, picture, context);
-      EXPECT_EQ(census.count(), static_cast<std::size_t>(threads)) << name;
+      std::size_t seen = 0;
+      for (int attempt = 0; attempt < 20 && seen != static_cast<std::size_t>(threads); ++attempt) {
+        Context context;
+        context.seed = 11;
+        context.threads = threads;
+        ThreadCensus census(context);
+        picture = {empty_frame(shot, exposure()), {}};
+        ASSERT_GE(picture.frame.tile_count(), 20u);
+        expose_range(shot, exposure(), {0, 6}, picture, context);
+        seen = census.count();
+      }
+      EXPECT_EQ(seen, static_cast<std::size_t>(threads)) << name;
       if (!single) {
         single = std::move(picture);
         continue;
