@@ -66,6 +66,21 @@ std::size_t Placement::baked_count() const {
       std::count_if(instances.begin(), instances.end(), [](const PlacedMesh& p) { return p.kind == Kind::baked; }));
 }
 
+namespace {
+
+// Interface surfaces let everything pass, shadow rays too; unless one bounds a medium, it need not be traced at all.
+bool is_nothing(const Scene& scene, const Instance& instance, const Mesh& mesh) {
+  const auto passes = [&](MaterialId id) {
+    if (!id.valid() || id.index >= scene.materials.size()) return false;
+    const Material& material = scene.materials[id.index];
+    return std::holds_alternative<InterfaceMaterial>(material.model) && !material.interior.valid();
+  };
+  if (instance.material_override.valid()) return passes(instance.material_override);
+  return !mesh.materials.empty() && std::all_of(mesh.materials.begin(), mesh.materials.end(), passes);
+}
+
+}  // namespace
+
 Placement place_meshes(const Scene& scene, const Context& context, const Placement* previous) {
   const std::vector<bool> animated = animated_nodes(scene);
   // Meshes are told apart by their arrays, so that two entries that share them count as one.
@@ -102,7 +117,7 @@ Placement place_meshes(const Scene& scene, const Context& context, const Placeme
         before.uses == 1 && before.placed->kind == Kind::baked && before.placed->world_from_object == instance.world_from_object;
     const bool moves = instance.node.valid() && instance.node.index < animated.size() && animated[instance.node.index];
     const bool edited = previous && !same_as_before;
-    if (mesh.positions.empty() || mesh.triangles.empty() || shape.collapsed) {
+    if (mesh.positions.empty() || mesh.triangles.empty() || shape.collapsed || is_nothing(scene, instance, mesh)) {
       placed.kind = Kind::absent;
     } else if (!shape.invertible || (uses[key] == 1 && !moves && !edited)) {
       // A flattened instance has no inverse to carry rays through, so it is baked however often it is used.

@@ -16,7 +16,7 @@ struct PlacedMesh {
   enum class Kind {
     baked,      ///< used once and still: vertices in world space, part of the static scene
     instanced,  ///< used more than once, animated or edited: object space behind a transform
-    absent,     ///< nothing to hit: no triangles, or a transform that collapses them
+    absent,     ///< nothing to hit: no triangles, a transform that collapses them, or interfaces that bound no medium
   };
   Kind kind = Kind::absent;
   SharedArray<Vec3> positions;       ///< in world space if baked, else the mesh's own

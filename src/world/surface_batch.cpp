@@ -104,6 +104,8 @@ void reconstruct_triangle(const SurfaceTables& tables, const HitBatch& hits, std
     error += (record.world_scale + kPointRoundings * kRounding) * max_abs(position) + record.constant;
   }
   const Vec3 geometric = record.winding * unit_normal(edge1, edge2);
+  const Barycentrics inside = inside_by(kEdgeMargin * error, u, v, edge1, edge2, glm::length(glm::cross(edge1, edge2)));
+  position = position + ((inside.u - u) * edge1 + (inside.v - v) * edge2);
   set(surfaces.position, i, position);
   set(surfaces.geometric_normal, i, geometric);
   set(surfaces.shading_normal, i, record.normals ? interpolated_normal(record, primitive, u, v, geometric) : geometric);
@@ -180,6 +182,24 @@ Vec3 shadow_offset_of(const SurfaceTables& tables, const RayBatch& rays, const H
 }
 
 }  // namespace
+
+Barycentrics inside_by(float margin, float u, float v, const Vec3& edge1, const Vec3& edge2, float double_area) {
+  if (!(double_area > 0 && double_area < 1e30f)) return {u, v};
+  // Barycentric coordinate of a point at distance `margin` from an edge: margin over the height above it.
+  const Vec3 edge3 = edge2 - edge1;
+  const float scale = margin / double_area, third = 1.f / 3;
+  const float least_u = std::min(third, scale * std::sqrt(length_squared(edge2)));
+  const float least_v = std::min(third, scale * std::sqrt(length_squared(edge1)));
+  const float least_w = std::min(third, scale * std::sqrt(length_squared(edge3)));
+  const float w = (1 - u) - v;
+  if (u >= least_u && v >= least_v && w >= least_w) return {u, v};
+  const float clamped_u = std::max(u, least_u), clamped_v = std::max(v, least_v), clamped_w = std::max(w, least_w);
+  // What the clamped ones gained is taken from the others in proportion to what they can give.
+  const float spare_u = clamped_u - least_u, spare_v = clamped_v - least_v, spare_w = clamped_w - least_w;
+  const float excess = ((clamped_u + clamped_v) + clamped_w) - 1, spare = (spare_u + spare_v) + spare_w;
+  const float share = spare > 0 ? std::min(1.f, excess / spare) : 0.f;
+  return {clamped_u - share * spare_u, clamped_v - share * spare_v};
+}
 
 Vec3 unit_normal(const Vec3& edge1, const Vec3& edge2) {
   const Vec3 n = glm::cross(edge1, edge2);

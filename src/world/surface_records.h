@@ -57,6 +57,14 @@ void reconstruct(const SurfaceTables& tables, const LightTable& lights, const Ra
 SurfaceDetail reconstruct_detail(const Scene& scene, const SurfaceTables& tables, const RayBatch& rays, const HitBatch& hits, std::size_t i,
                                  float cone_width);
 
+/// Barycentrics moved, where need be, so that the point lies at least `margin` from each edge of the triangle, or at its centre if it is
+/// too small for that. A hit within its error bound of an edge may otherwise be rounded onto or behind a neighbouring wall, from where a
+/// ray leaves the room; the offset along the own normal cannot mend that. `double_area` is |edge1 x edge2|.
+struct Barycentrics {
+  float u, v;
+};
+Barycentrics inside_by(float margin, float u, float v, const Vec3& edge1, const Vec3& edge2, float double_area);
+
 /// Corners of a hit triangle in world space, and its interpolated unit normal (`fallback` where there is none).
 struct WorldTriangle {
   std::array<Vec3, 3> vertices;
@@ -75,5 +83,7 @@ inline constexpr float kPointRoundings = 3;
 inline constexpr float kEdgeRoundings = 16;
 /// The same for spheres, relative to the radius: the tracer's discriminant loses more.
 inline constexpr float kRadiusRoundings = 32;
+/// Distance that hits keep from the edges of their triangle, in units of the error bound.
+inline constexpr float kEdgeMargin = 2;
 
 }  // namespace sightline

@@ -48,6 +48,18 @@ HWY_INLINE M mask_of(D d, std::uint16_t bits, std::size_t i) {
   return hn::RebindMask(d, hn::Ne(hn::And(hn::Set(du, bits), bit), hn::Zero(du)));
 }
 
+// Hits so close to an edge that inside_by may move them: rare, and left to the scalar definition. Squares avoid the roots; the slack makes
+// up for their rounding.
+HWY_INLINE M near_an_edge(D d, V margin, V u, V v, const V3& edge1, const V3& edge2, V area2) {
+  const V3 edge3 = sub(edge2, edge1);
+  const V margin2 = hn::Mul(hn::Mul(margin, margin), hn::Set(d, 1.001f));
+  const V w = hn::Sub(hn::Sub(hn::Set(d, 1.f), u), v);
+  const auto close = [&](V b, const V3& edge) {
+    return hn::Or(hn::Lt(b, hn::Zero(d)), hn::Lt(hn::Mul(hn::Mul(b, b), area2), hn::Mul(margin2, dot(edge, edge))));
+  };
+  return hn::Or(close(u, edge2), hn::Or(close(v, edge1), close(w, edge3)));
+}
+
 // The same operations in the same order as reconstruct_triangle, so that both give the same bits.
 std::uint16_t ReconstructLanes(const TriangleLanes& lanes, const float* HWY_RESTRICT u, const float* HWY_RESTRICT v, std::size_t begin,
                                SurfaceBatch& surfaces) {
@@ -66,6 +78,8 @@ std::uint16_t ReconstructLanes(const TriangleLanes& lanes, const float* HWY_REST
     const V3 n = cross(edge1, edge2);
     const V length2 = dot(n, n);
     const M usable = hn::And(active, in_range(d, length2));
+    const M near_edge = near_an_edge(d, hn::Mul(hn::Set(d, kEdgeMargin), error), bu, bv, edge1, edge2, length2);
+    const M usable_far = hn::AndNot(near_edge, usable);
     const V3 geometric = mul(mul(n, hn::Div(one, hn::Sqrt(length2))), hn::Load(d, lanes.winding + i));
 
     V3 shading = geometric;
@@ -79,13 +93,13 @@ std::uint16_t ReconstructLanes(const TriangleLanes& lanes, const float* HWY_REST
       const M good = hn::And(smooth, in_range(d, m2));
       shading = {hn::IfThenElse(good, unit.x, shading.x), hn::IfThenElse(good, unit.y, shading.y), hn::IfThenElse(good, unit.z, shading.z)};
     }
-    store3(d, usable, position, surfaces.position, begin + i);
-    store3(d, usable, geometric, surfaces.geometric_normal, begin + i);
-    store3(d, usable, shading, surfaces.shading_normal, begin + i);
-    hn::BlendedStore(error, usable, d, surfaces.error.data() + begin + i);
+    store3(d, usable_far, position, surfaces.position, begin + i);
+    store3(d, usable_far, geometric, surfaces.geometric_normal, begin + i);
+    store3(d, usable_far, shading, surfaces.shading_normal, begin + i);
+    hn::BlendedStore(error, usable_far, d, surfaces.error.data() + begin + i);
 
     alignas(kCacheLine) std::uint8_t bits[8] = {};
-    const std::size_t bytes = hn::StoreMaskBits(d, hn::AndNot(usable, active), bits);
+    const std::size_t bytes = hn::StoreMaskBits(d, hn::AndNot(usable_far, active), bits);
     for (std::size_t b = 0; b < bytes; ++b) left = static_cast<std::uint16_t>(left | (bits[b] << (i + 8 * b)));
   }
   return left;

@@ -18,8 +18,8 @@ struct alignas(kCacheLine) TriangleLanes {
   std::uint16_t smooth = 0;  ///< bit i: it has shading normals
 };
 
-/// Writes position, error and both normals of the active lanes of [begin, begin + 16) and returns those whose normal left the range of
-/// float products and must be done by the scalar definition (reconstruct_triangle).
+/// Writes position, error and both normals of the active lanes of [begin, begin + 16) and returns those that must be done by the
+/// scalar definition (reconstruct_triangle): near an edge, or with a normal out of the range of float products.
 std::uint16_t reconstruct_lanes(const TriangleLanes& lanes, const float* u, const float* v, std::size_t begin, SurfaceBatch& surfaces);
 
 }  // namespace sightline

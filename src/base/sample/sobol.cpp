@@ -58,6 +58,11 @@ HWY_INLINE V pair_key_v(D d, V key, std::uint32_t pair) {
   return hash32_v(d, hn::Xor(key, sum));
 }
 
+HWY_INLINE V shuffled_index_v(D d, V index, V pair_key) {
+  const V second_key = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0x2545f491u)));
+  return reverse_bits_v(d, laine_karras_v(d, laine_karras_v(d, reverse_bits_v(d, index), pair_key), second_key));
+}
+
 HWY_INLINE void store_unit(V bits, float* to) {
   const hn::RebindToSigned<D> di;
   const hn::RebindToFloat<D> df;
@@ -69,7 +74,7 @@ void Sobol2d(const std::uint32_t* HWY_RESTRICT keys, const std::uint32_t* HWY_RE
   const D d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const V pair_key = pair_key_v(d, hn::Load(d, keys + i), pair);
-    const V shuffled = reverse_bits_v(d, laine_karras_v(d, reverse_bits_v(d, hn::Load(d, indices + i)), pair_key));
+    const V shuffled = shuffled_index_v(d, hn::Load(d, indices + i), pair_key);
     const V key_x = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0xa511e9b3u)));
     store_unit(reverse_bits_v(d, laine_karras_v(d, shuffled, key_x)), u + i);
     const V key_y = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0x63d83595u)));
@@ -82,7 +87,7 @@ void Sobol1d(const std::uint32_t* HWY_RESTRICT keys, const std::uint32_t* HWY_RE
   const D d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const V pair_key = pair_key_v(d, hn::Load(d, keys + i), pair);
-    const V shuffled = reverse_bits_v(d, laine_karras_v(d, reverse_bits_v(d, hn::Load(d, indices + i)), pair_key));
+    const V shuffled = shuffled_index_v(d, hn::Load(d, indices + i), pair_key);
     const V key_x = hash32_v(d, hn::Xor(pair_key, hn::Set(d, 0xa511e9b3u)));
     store_unit(reverse_bits_v(d, laine_karras_v(d, shuffled, key_x)), u + i);
   }

@@ -62,10 +62,16 @@ constexpr std::uint32_t sobol1_reversed(std::uint32_t index) {
 /// 24 high bits as a float in [0, 1).
 constexpr float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
+/// Shuffle of the sample index: two rounds under independent keys, since in one the first 2^b indices feel only about 2b bits of the key,
+/// and among millions of pixels two pairs of dimensions would then now and then share their order.
+constexpr std::uint32_t shuffled_index(std::uint32_t index, std::uint32_t pair_key) {
+  return reverse_bits(laine_karras(laine_karras(reverse_bits(index), pair_key), hash32(pair_key ^ 0x2545f491u)));
+}
+
 /// The scalar definition: pair `pair` of sample `index` under `key`.
 inline Vec2 sobol_2d(std::uint32_t key, std::uint32_t index, std::uint32_t pair) {
   const std::uint32_t pair_key = hash_combine(key, pair);
-  const std::uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(index), pair_key));
+  const std::uint32_t shuffled = shuffled_index(index, pair_key);
   const std::uint32_t x = reverse_bits(laine_karras(shuffled, hash32(pair_key ^ 0xa511e9b3u)));
   const std::uint32_t y = reverse_bits(laine_karras(sobol1_reversed(shuffled), hash32(pair_key ^ 0x63d83595u)));
   return {unit_float(x), unit_float(y)};
