@@ -47,6 +47,12 @@ struct RayBatch {
     direction.x[i] = r.direction.x, direction.y[i] = r.direction.y, direction.z[i] = r.direction.z;
     t_near[i] = r.t_near, t_far[i] = r.t_far;
   }
+  /// Rays that are not inactive.
+  std::size_t active_count() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < size; ++i) count += t_near[i] <= t_far[i];
+    return count;
+  }
   Ray get(std::size_t i) const {
     return {{origin.x[i], origin.y[i], origin.z[i]}, t_near[i], {direction.x[i], direction.y[i], direction.z[i]}, t_far[i]};
   }

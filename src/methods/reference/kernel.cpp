@@ -1,6 +1,7 @@
 #include "methods/reference/kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -29,18 +30,16 @@ void fill(Vec3Batch& batch, std::size_t first, std::size_t count, const Vec3& v)
   std::fill_n(batch.z.data() + first, count, v.z);
 }
 
-// Pixels of a tile in 4x4 blocks, so that 16 neighbouring lanes are a square.
-std::vector<std::uint32_t> block_order(const Tile& tile, int width) {
-  std::vector<std::uint32_t> order;
-  order.reserve(static_cast<std::size_t>(tile.pixel_count()));
-  for (int by = tile.y0; by < tile.y1; by += 4) {
-    for (int bx = tile.x0; bx < tile.x1; bx += 4) {
-      for (int y = by; y < std::min(by + 4, tile.y1); ++y) {
-        for (int x = bx; x < std::min(bx + 4, tile.x1); ++x) order.push_back(static_cast<std::uint32_t>(y * width + x));
-      }
-    }
+// A block of 4x4 pixels makes a packet of 16 rays.
+constexpr int kBlockSize = 4;
+
+// Upper left corners of the blocks that cover a tile.
+std::vector<IVec2> blocks_of(const Tile& tile) {
+  std::vector<IVec2> blocks;
+  for (int y = tile.y0; y < tile.y1; y += kBlockSize) {
+    for (int x = tile.x0; x < tile.x1; x += kBlockSize) blocks.emplace_back(x, y);
   }
-  return order;
+  return blocks;
 }
 
 }  // namespace
@@ -51,7 +50,7 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   for (const Material& material : world.scene().materials) emissive |= !is_black(material.emission.value);
   bsdf_sampling_finds_lights_ = emissive;
 
-  pixel_.resize(kBatch), sample_.resize(kBatch), key_.resize(kBatch);
+  in_picture_.resize(kBatch), pixel_.resize(kBatch), sample_.resize(kBatch), key_.resize(kBatch);
   direct_.resize(kBatch), indirect_.resize(kBatch);
   slot_.resize(kBatch), throughput_.resize(kBatch), bsdf_pdf_.resize(kBatch), previous_.resize(kBatch), previous_normal_.resize(kBatch);
   medium_.resize(kBatch), cone_width_.resize(kBatch), cone_spread_.resize(kBatch);
@@ -59,19 +58,20 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), pdf_.resize(kBatch), u0_.resize(kBatch), u1_.resize(kBatch),
       u2_.resize(kBatch), u3_.resize(kBatch);
   light_position_.resize(kBatch), light_normal_.resize(kBatch), wi_.resize(kBatch);
+  // In place, each run of light samples takes whole groups of lanes: at least 8 samples, so at most twice as many lanes.
   shadow_.resize(kBatch), occluded_.resize(kBatch);
 }
 
 void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
   counts_ = {};
-  const std::vector<std::uint32_t> order = block_order(tile, view_.width());
-  // A batch holds all samples of some pixels, or a part of the samples of one; sums are exact, so the split does not show.
-  const std::uint32_t samples_a_batch = std::min<std::uint32_t>(samples.count(), kBatch);
-  const std::size_t pixels_a_batch = kBatch / samples_a_batch;
-  for (std::size_t first = 0; first < order.size(); first += pixels_a_batch) {
-    const std::span pixels = std::span(order).subspan(first, std::min(pixels_a_batch, order.size() - first));
+  const std::vector<IVec2> blocks = blocks_of(tile);
+  // A batch holds all samples of some blocks, or a part of the samples of one; sums are exact, so the split does not show.
+  const std::uint32_t samples_a_batch = std::min<std::uint32_t>(samples.count(), kBatch / kLanes);
+  const std::size_t blocks_a_batch = kBatch / kLanes / samples_a_batch;
+  for (std::size_t first = 0; first < blocks.size(); first += blocks_a_batch) {
+    const std::span some = std::span(blocks).subspan(first, std::min(blocks_a_batch, blocks.size() - first));
     for (std::uint32_t begin = samples.begin; begin < samples.end; begin += samples_a_batch) {
-      start_paths(tile, pixels, {begin, std::min(begin + samples_a_batch, samples.end)});
+      start_paths(tile, some, {begin, std::min(begin + samples_a_batch, samples.end)});
       const std::uint32_t last = static_cast<std::uint32_t>(options_.max_bounces) + 1;
       for (std::uint32_t bounce = 0; bounce <= last && alive_ > 0; ++bounce) {
         trace(bounce);
@@ -84,6 +84,7 @@ void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame
         scatter(bounce);
       }
       for (std::size_t path = 0; path < path_count_; ++path) {
+        if (!in_picture_[path]) continue;
         frame.add_color(pixel_[path], sample_[path], direct_[path] + indirect_[path]);
         frame.add(Aov::direct, pixel_[path], direct_[path]);
         frame.add(Aov::indirect, pixel_[path], indirect_[path]);
@@ -95,13 +96,23 @@ void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame
   statistics.visibility.traced += counts_.occlusion;
 }
 
-void PathKernel::start_paths(const Tile&, std::span<const std::uint32_t> pixels, SampleRange samples) {
+void PathKernel::start_paths(const Tile& tile, std::span<const IVec2> blocks, SampleRange samples) {
+  // The packet that a camera ray travels in is made of its block and sample alone, whatever else is rendered with it.
   path_count_ = 0;
-  for (const std::uint32_t pixel : pixels) {
-    const std::uint32_t key = pixel_key(options_.seed, pixel);
-    for (std::uint32_t sample = samples.begin; sample < samples.end; ++sample) {
-      pixel_[path_count_] = pixel, sample_[path_count_] = sample, key_[path_count_] = key;
-      ++path_count_;
+  for (const IVec2& block : blocks) {
+    std::array<std::uint32_t, kLanes> pixel, key;
+    std::array<std::uint8_t, kLanes> inside;
+    for (int i = 0; i < static_cast<int>(kLanes); ++i) {
+      const int x = block.x + i % kBlockSize, y = block.y + i / kBlockSize;
+      inside[i] = x < tile.x1 && y < tile.y1;
+      pixel[i] = static_cast<std::uint32_t>(std::min(y, tile.y1 - 1) * view_.width() + std::min(x, tile.x1 - 1));
+      key[i] = pixel_key(options_.seed, pixel[i]);
+    }
+    for (std::uint32_t sample = samples.begin; sample < samples.end; ++sample, path_count_ += kLanes) {
+      std::copy(pixel.begin(), pixel.end(), pixel_.begin() + static_cast<std::ptrdiff_t>(path_count_));
+      std::copy(key.begin(), key.end(), key_.begin() + static_cast<std::ptrdiff_t>(path_count_));
+      std::copy(inside.begin(), inside.end(), in_picture_.begin() + static_cast<std::ptrdiff_t>(path_count_));
+      std::fill_n(sample_.begin() + static_cast<std::ptrdiff_t>(path_count_), kLanes, sample);
     }
   }
   alive_ = path_count_;
@@ -112,7 +123,7 @@ void PathKernel::start_paths(const Tile&, std::span<const std::uint32_t> pixels,
                      {rays_.origin.x.data(), rays_.origin.y.data(), rays_.origin.z.data(), rays_.direction.x.data(),
                       rays_.direction.y.data(), rays_.direction.z.data()});
   for (std::size_t i = 0; i < alive_; ++i) {
-    rays_.t_near[i] = 0, rays_.t_far[i] = kInfinity;
+    rays_.t_near[i] = 0, rays_.t_far[i] = in_picture_[i] ? kInfinity : -1.f;
     slot_[i] = static_cast<std::uint32_t>(i);
     store(throughput_, i, Color(1));
     direct_[i] = indirect_[i] = Color(0);
@@ -136,7 +147,7 @@ void PathKernel::add_emission(std::uint32_t bounce) {
     if (hits_.hit(i) && medium_[i].valid())
       store(throughput_, i, load(throughput_, i) * glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]));
     if (!hits_.hit(i)) {
-      if (!lights.has_environment()) continue;
+      if (!lights.has_environment() || !in_picture_[slot_[i]]) continue;
       float weight = 1;
       if (bsdf_pdf_[i] >= 0)
         weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) *
@@ -222,11 +233,21 @@ void PathKernel::sample_lights_once(std::uint32_t bounce) {
   for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
   draw_light_samples(bounce, alive_, surfaces_.position, surfaces_.geometric_normal);
   shadow_.count = 0;
+  shadow_.in_place = coherent_shadows(bounce);
   append_direct_light_each({&rays_, &surfaces_, &throughput_}, 0, light_, alive_, plain_.data(), {1, !options_.one_hit}, shadow_);
   for (std::size_t i = 0; i < alive_; ++i) {
-    if (shaded_[i] && !plain_[i] && !bsdf_[i].is_delta()) append_general(i, i);
+    if (!shaded_[i] || plain_[i] || bsdf_[i].is_delta()) continue;
+    if (shadow_.in_place)
+      set_general(i, i, i);
+    else
+      shadow_.count += set_general(i, i, shadow_.count);
   }
   trace_shadows(bounce);
+}
+
+// Camera hits of a block and the samples of one point make coherent packets; a few samples a point would leave most of a packet empty.
+bool PathKernel::coherent_shadows(std::uint32_t bounce) const {
+  return bounce == 0 && (options_.light_samples == 1 || options_.light_samples >= 8);
 }
 
 // Several samples a point: the samples of a point stand side by side, points are worked off in chunks of lanes.
@@ -238,11 +259,20 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
     if (lanes == 0) return;
     draw_light_samples(bounce, lanes, light_position_, light_normal_);
     shadow_.count = 0;
+    shadow_.in_place = coherent_shadows(bounce);
     for (const Run& run : runs_) {
       if (plain_[run.point]) {
         append_direct_light({&rays_, &surfaces_, &throughput_}, run.point, light_, run.first, run.count, direct, shadow_);
       } else {
-        for (std::size_t k = run.first; k < run.first + run.count; ++k) append_general(run.point, k);
+        const std::size_t base = shadow_.count;
+        for (std::size_t k = 0; k < run.count; ++k) {
+          if (shadow_.in_place) set_inactive(base + k, run.point);
+          shadow_.count += set_general(run.point, run.first + k, shadow_.in_place ? base + k : shadow_.count);
+        }
+        if (shadow_.in_place) {
+          for (std::size_t k = run.count; k < padded(run.count); ++k) set_inactive(base + k, run.point);
+          shadow_.count = base + padded(run.count);
+        }
       }
     }
     runs_.clear();
@@ -269,40 +299,46 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
   flush();
 }
 
-// One light sample at a point whose material is not plain Lambert: the scalar definition of what the vector path does.
-void PathKernel::append_general(std::size_t point, std::size_t lane) {
-  if (!(light_.pdf[lane] > 0)) return;
+void PathKernel::set_inactive(std::size_t at, std::size_t point) {
+  shadow_.rays.set(at, {Vec3(0), 0, Vec3(0, 0, 1), -1});
+  store(shadow_.contribution, at, Color(0));
+  shadow_.point[at] = static_cast<std::uint32_t>(point);
+}
+
+// One light sample at a point whose material is not plain Lambert, to lane `at`: the scalar definition of what the vector path does.
+// False if it carries nothing; the lane is then left as it is.
+bool PathKernel::set_general(std::size_t point, std::size_t lane, std::size_t at) {
+  if (!(light_.pdf[lane] > 0)) return false;
   const float samples = static_cast<float>(options_.light_samples);
   const Vec3 wi = load(light_.wi, lane);
   const Vec3 wo = -load(rays_.direction, point);
   const Vec3 geometric = load(surfaces_.geometric_normal, point);
   const Vec3 wo_local = frame_[point].to_local(wo), wi_local = frame_[point].to_local(wi);
   // Reflection by the shading normal must be reflection by the geometric one, else light leaks through.
-  if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) return;
+  if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) return false;
   const BsdfEval eval = bsdf_[point].evaluate(wo_local, wi_local);
   Color value = eval.f_cos * load(light_.radiance, lane) * (1 / (light_.pdf[lane] * samples));
-  if (is_black(value)) return;
+  if (is_black(value)) return false;
   // Rays find emissive geometry and the environment too; lights that only sampling sees keep weight 1.
   const bool infinite = std::isinf(light_.distance[lane]);
   const bool other_technique = !options_.one_hit && !light_.is_delta[lane] && (light_.is_mesh[lane] || infinite);
   if (other_technique) value *= power_heuristic(samples * light_.pdf[lane], eval.pdf);
   const Vec3 origin = offset_origin(load(surfaces_.position, point), geometric, surfaces_.error[point], wi);
   if (infinite) {
-    shadow_.rays.set(shadow_.count, {origin, 0, wi, kInfinity});
+    shadow_.rays.set(at, {origin, 0, wi, kInfinity});
   } else {
     const Vec3 target = offset_origin(load(light_.point, lane), load(light_.normal, lane), light_.point_error[lane], -wi);
-    shadow_.rays.set(shadow_.count, {origin, 0, target - origin, 1});
+    shadow_.rays.set(at, {origin, 0, target - origin, 1});
   }
-  store(shadow_.contribution, shadow_.count, load(throughput_, point) * value);
-  shadow_.point[shadow_.count] = static_cast<std::uint32_t>(point);
-  ++shadow_.count;
+  store(shadow_.contribution, at, load(throughput_, point) * value);
+  shadow_.point[at] = static_cast<std::uint32_t>(point);
+  return true;
 }
 
 void PathKernel::trace_shadows(std::uint32_t bounce) {
   if (shadow_.count == 0) return;
   shadow_.rays.size = shadow_.count;
-  const bool coherent = bounce == 0;
-  world_.tracer().occluded(shadow_.rays, std::span(occluded_), coherent ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
+  world_.tracer().occluded(shadow_.rays, std::span(occluded_), shadow_.in_place ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
   // Samples of one point stand side by side: sum them before going to the path.
   std::vector<Color>& radiance = bounce == 0 ? direct_ : indirect_;
   for (std::size_t r = 0; r < shadow_.count;) {

@@ -36,7 +36,7 @@ class PathKernel {
   /// Light samples worked off at a time: what the light batch and the shadow rays need stays in the L2 cache.
   static constexpr std::size_t kLightChunk = 512;
 
-  void start_paths(const Tile& tile, std::span<const std::uint32_t> pixels, SampleRange samples);
+  void start_paths(const Tile& tile, std::span<const IVec2> blocks, SampleRange samples);
   void trace(std::uint32_t bounce);
   void add_emission(std::uint32_t bounce);
   void evaluate_materials(std::uint32_t bounce);
@@ -44,7 +44,9 @@ class PathKernel {
   void sample_lights_once(std::uint32_t bounce);
   void sample_lights_often(std::uint32_t bounce);
   void draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals);
-  void append_general(std::size_t point, std::size_t lane);
+  bool coherent_shadows(std::uint32_t bounce) const;
+  void set_inactive(std::size_t at, std::size_t point);
+  bool set_general(std::size_t point, std::size_t lane, std::size_t at);
   void trace_shadows(std::uint32_t bounce);
   void scatter(std::uint32_t bounce);
   void write_aovs(Frame& frame);
@@ -58,6 +60,7 @@ class PathKernel {
   // One element a path, for its whole life.
   std::size_t path_count_ = 0;
   AlignedVector<std::uint32_t> pixel_, sample_, key_;
+  AlignedVector<std::uint8_t> in_picture_;  ///< 0: fills up a block that sticks out of the tile
   std::vector<Color> direct_, indirect_;
 
   // One element a living path, compacted after each bounce.

@@ -1,5 +1,6 @@
 #include "methods/reference/lambert_lanes.h"
 
+#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -66,7 +67,7 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
   M keep = hn::And(valid, hn::Gt(pdf, zero));
   keep = hn::And(keep, hn::Gt(hn::Mul(dot(p.wo, p.ns), cos_i), zero));
   keep = hn::And(keep, hn::Gt(hn::Mul(dot(p.wo, p.ng), side), zero));
-  if (hn::AllFalse(d, keep)) return;
+  if (!out.in_place && hn::AllFalse(d, keep)) return;
 
   const V abs_cos = hn::Abs(cos_i);
   const V bsdf_pdf = hn::Mul(abs_cos, hn::Set(d, kInvPi));
@@ -91,7 +92,7 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
                     hn::Mul(hn::Mul(hn::Mul(p.albedo.y, p.throughput.y), radiance.y), scale),
                     hn::Mul(hn::Mul(hn::Mul(p.albedo.z, p.throughput.z), radiance.z), scale)};
   keep = hn::And(keep, hn::Gt(hn::Max(value.x, hn::Max(value.y, value.z)), zero));
-  if (hn::AllFalse(d, keep)) return;
+  if (!out.in_place && hn::AllFalse(d, keep)) return;
 
   const V3 origin = offset_along(p.position, p.ng, p.error, side);
   const V3 light_normal = load3(d, light.normal, lane);
@@ -101,6 +102,17 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
   const V t_far = hn::IfThenElse(infinite, distance, one);
 
   const std::size_t at = out.count;
+  if (out.in_place) {
+    const auto put = [&](V v, AlignedVector<float>& array) { hn::StoreU(v, d, array.data() + at); };
+    const auto put_kept = [&](V v, AlignedVector<float>& array) { put(hn::IfThenElseZero(keep, v), array); };
+    put(origin.x, out.rays.origin.x), put(origin.y, out.rays.origin.y), put(origin.z, out.rays.origin.z);
+    put(direction.x, out.rays.direction.x), put(direction.y, out.rays.direction.y), put(direction.z, out.rays.direction.z);
+    put(zero, out.rays.t_near), put(hn::IfThenElse(keep, t_far, hn::Set(d, -1.f)), out.rays.t_far);
+    put_kept(value.x, out.contribution.x), put_kept(value.y, out.contribution.y), put_kept(value.z, out.contribution.z);
+    hn::StoreU(point, du, out.point.data() + at);
+    out.count += hn::Lanes(d);
+    return;
+  }
   const auto put = [&](V v, AlignedVector<float>& array) { hn::CompressStore(v, keep, d, array.data() + at); };
   put(origin.x, out.rays.origin.x), put(origin.y, out.rays.origin.y), put(origin.z, out.rays.origin.z);
   put(direction.x, out.rays.direction.x), put(direction.y, out.rays.direction.y), put(direction.z, out.rays.direction.z);
@@ -122,8 +134,10 @@ void AppendDirectLight(const ShadingPoints& points, std::uint32_t point, const L
   p.position = set3(d, s.position, point);
   p.throughput = set3(d, *points.throughput, point);
   p.error = hn::Set(d, s.error[point]);
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d))
-    emit(d, p, hn::Set(du, point), light, first + i, hn::FirstN(d, count - i), options, out);
+  // In place, a run fills whole groups of kLanes.
+  const std::size_t lanes = out.in_place ? padded(count) : count;
+  for (std::size_t i = 0; i < lanes; i += hn::Lanes(d))
+    emit(d, p, hn::Set(du, point), light, first + std::min(i, count), hn::FirstN(d, count - std::min(i, count)), options, out);
 }
 
 void AppendDirectLightEach(const ShadingPoints& points, std::uint32_t first_point, const LightSampleBatch& light, std::size_t count,
@@ -132,11 +146,12 @@ void AppendDirectLightEach(const ShadingPoints& points, std::uint32_t first_poin
   const DU du;
   const auto bytes = hn::Rebind<std::uint8_t, D>();
   const SurfaceBatch& s = *points.surfaces;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+  const std::size_t lanes = out.in_place ? padded(count) : count;
+  for (std::size_t i = 0; i < lanes; i += hn::Lanes(d)) {
     const std::size_t at = first_point + i;
     const auto flag = hn::PromoteTo(du, hn::LoadU(bytes, active + at));
-    const M valid = hn::And(hn::FirstN(d, count - i), hn::RebindMask(d, hn::Ne(flag, hn::Zero(du))));
-    if (hn::AllFalse(d, valid)) continue;
+    const M valid = hn::And(hn::FirstN(d, count - std::min(i, count)), hn::RebindMask(d, hn::Ne(flag, hn::Zero(du))));
+    if (!out.in_place && hn::AllFalse(d, valid)) continue;
     PointV p;
     p.wo = neg(load3(d, points.rays->direction, at));
     p.ng = load3(d, s.geometric_normal, at);

@@ -19,12 +19,16 @@ struct ShadingPoints {
   const Vec3Batch* throughput;
 };
 
-/// Shadow rays with the radiance they carry if nothing is in between. Compacted: only non-zero contributions ask for a ray.
+/// Shadow rays with the radiance they carry if nothing is in between. Either compacted, so that only non-zero contributions have a lane; or
+/// in place, where a lane's position depends on its point and sample alone and the others are inactive rays (t_far < 0). Coherent packets
+/// are only made of rays in place: their answers at ties depend on the company a ray keeps, and must not depend on how samples are split
+/// into passes.
 struct ShadowLanes {
   RayBatch rays;
   Vec3Batch contribution;
   AlignedVector<std::uint32_t> point;  ///< index into ShadingPoints
   std::size_t count = 0;
+  bool in_place = false;
   void resize(std::size_t capacity);
 };
 

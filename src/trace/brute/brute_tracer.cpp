@@ -43,12 +43,12 @@ class BruteTracer final : public Tracer {
       hits.t[i] = nearest.t, hits.u[i] = nearest.u, hits.v[i] = nearest.v;
       hits.instance[i] = nearest.instance, hits.primitive[i] = nearest.primitive;
     }
-    counts.closest += rays.size;
+    counts.closest += rays.active_count();
   }
 
   void occluded(const RayBatch& rays, std::span<std::uint8_t> occluded, BatchKind, RayCounts& counts) const override {
     for (std::size_t i = 0; i < rays.size; ++i) occluded[i] = closest(rays.get(i), true).instance != kNoHit;
-    counts.occlusion += rays.size;
+    counts.occlusion += rays.active_count();
   }
 
   Bounds bounds() const override { return bounds_; }

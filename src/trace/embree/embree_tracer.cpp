@@ -42,12 +42,12 @@ class EmbreeTracer final : public Tracer {
   void intersect(const RayBatch& rays, HitBatch& hits, BatchKind kind, RayCounts& counts) const override {
     hits.resize(rays.size);
     intersect_batch(scenes_, rays, hits, intersect_style(kind, scenes_, device_->native_width()));
-    counts.closest += rays.size;
+    counts.closest += rays.active_count();
   }
 
   void occluded(const RayBatch& rays, std::span<std::uint8_t> occluded, BatchKind kind, RayCounts& counts) const override {
     occluded_batch(scenes_, rays, occluded, occluded_style(kind, scenes_, device_->native_width()));
-    counts.occlusion += rays.size;
+    counts.occlusion += rays.active_count();
   }
 
   Bounds bounds() const override { return bounds_; }

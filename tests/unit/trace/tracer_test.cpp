@@ -83,7 +83,7 @@ TEST(Tracer, HitsNameTheSameTriangleAwayFromTies) {
   }
   EXPECT_GT(named, 4000);
   EXPECT_GT(second, 500);
-  EXPECT_EQ(counts.closest, 5 * rays.size);
+  EXPECT_EQ(counts.closest, 5 * rays.active_count());
 }
 
 TEST(Tracer, EmbreeEqualsBruteForceOnEvilTriangles) {
