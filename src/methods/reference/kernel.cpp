@@ -58,6 +58,7 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   scratch_key_.resize(kBatch), scratch_index_.resize(kBatch), pdf_.resize(kBatch), u0_.resize(kBatch), u1_.resize(kBatch),
       u2_.resize(kBatch), u3_.resize(kBatch);
   light_position_.resize(kBatch), light_normal_.resize(kBatch), wi_.resize(kBatch);
+  light_.resize(kBatch + kLanes);  // a run that begins inside a group is read in whole vectors
   // In place, each run of light samples takes whole groups of lanes: at least 8 samples, so at most twice as many lanes.
   shadow_.resize(kBatch), occluded_.resize(kBatch);
 }

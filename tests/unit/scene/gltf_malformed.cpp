@@ -1,5 +1,6 @@
 // Hostile files: each ends in an Error that names the place, or in a scene, and never takes more memory than a small multiple of its size.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -202,7 +203,7 @@ TEST(GltfMalformed, ExternalFilesAreRefusedInMemory) {
 }
 
 TEST(GltfMalformed, FilesOutsideTheFolderAreRefused) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "gltf_confined";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("gltf_confined_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder / "inner");
   const float triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   for (const std::filesystem::path& path : {folder / "secret.bin", folder / "inner" / "a b.bin"}) {

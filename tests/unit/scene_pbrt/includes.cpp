@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -9,7 +11,7 @@ namespace {
 class PbrtFiles : public testing::Test {
  protected:
   void SetUp() override {
-    directory_ = std::filesystem::path(testing::TempDir()) / "sightline_pbrt_files";
+    directory_ = std::filesystem::path(testing::TempDir()) / ("sightline_pbrt_files_" + std::to_string(::getpid()));
     std::filesystem::create_directories(directory_ / "parts");
   }
   void TearDown() override { std::filesystem::remove_all(directory_); }

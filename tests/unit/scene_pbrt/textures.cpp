@@ -1,5 +1,7 @@
 #include "unit/scene_pbrt/pbrt_text.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -76,7 +78,7 @@ TEST(PbrtTextures, NestingThatWouldExplodeIsRefused) {
 class PbrtImages : public testing::Test {
  protected:
   void SetUp() override {
-    directory_ = std::filesystem::path(testing::TempDir()) / "sightline_pbrt_images";
+    directory_ = std::filesystem::path(testing::TempDir()) / ("sightline_pbrt_images_" + std::to_string(::getpid()));
     std::filesystem::create_directories(directory_);
     const std::vector<std::uint8_t> pixels = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
     write_file(directory_ / "four.png", encode_png(2, 2, 3, pixels));

@@ -94,13 +94,15 @@ TEST(World, ErrorBoundsHoldThePointInDoublePrecision) {
         // Near an edge the point is moved inside on purpose, but stays as close to the plane.
         ASSERT_LE(distance_from_plane(*world, traced.hits, at(traced.surfaces.position, i), i), traced.surfaces.error[i]) << distance;
         const float u = traced.hits.u[i], v = traced.hits.v[i];
-        if (std::min({u, v, 1 - u - v}) < 0.1f || traced.surfaces.error[i] > 1e-3f) continue;
+        if (std::min({u, v, 1 - u - v}) < 0.1f || distance > 1000) continue;
         ASSERT_LE(largest, traced.surfaces.error[i]) << distance;
         largest_share = std::max(largest_share, largest / traced.surfaces.error[i]);
       }
     }
     EXPECT_GT(hit_count, 500u);
-    EXPECT_GT(largest_share, 0.01);  // the bound is no wild guess
+    if (distance < 1000) {
+      EXPECT_GT(largest_share, 0.01);  // the bound is no wild guess
+    }
   }
 }
 
