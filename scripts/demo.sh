@@ -34,7 +34,7 @@ show() {
   local name=$1 scene=$2 spp=$3 method
   shift 3
   local truth="$out/$name-truth.exr" others=()
-  "$sightline" render "$scene" "$@" --size 640x480 --spp "$((spp * 16))" --aov surface -o "$truth" -o "$out/$name-truth.png"
+  "$sightline" render "$scene" "$@" --size 640x480 --spp "$((spp * 8))" --aov surface -o "$truth" -o "$out/$name-truth.png"
   for method in "${methods[@]}"; do
     # A method may refuse a scene that it does not suit; it says so, and the demo goes on.
     if "$sightline" render "$scene" "$@" --size 640x480 --spp "$spp" --method "$method" -o "$out/$name-$method.exr" -o "$out/$name-$method.png"; then
@@ -45,10 +45,10 @@ show() {
   pictures+=("$truth" "${others[@]}")
 }
 
-show cornell builtin:cornell 32
-show hairball builtin:room,content=builtin:hairball 16
-show isosurface builtin:isosurface 16
-show plant builtin:plant 16
+show cornell builtin:cornell 16
+show hairball builtin:room,content=builtin:hairball 4
+show isosurface builtin:isosurface 8
+show plant builtin:plant 8
 
 "$sightline" gallery "${pictures[@]}" --title "Sightline: built-in scenes, every method" -o "$out/index.html"
 echo "demo: done in $SECONDS s; open $out/index.html"

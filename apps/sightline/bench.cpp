@@ -15,6 +15,7 @@ int run_bench(const CommandLine& line, Console&, Context& context) {
   TraceBenchOptions options;
   options.data = line.common.data_directory;
   options.quick = command.quick;
+  options.size_px = command.size_px;
   if (!command.views.empty()) options.views = command.views;
   for (const std::string& suite : command.suites) {
     if (suite != "trace") throw usage_error("unknown benchmark suite '" + suite + "'").remedy("known: trace");

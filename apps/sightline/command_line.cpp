@@ -263,6 +263,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
       ->allow_extra_args(false);
   bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
+  add_parsed(*bench, "--size", line.bench.size_px, parse_size, "picture size (default: the views' own, 1280x960)", "WxH");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
 
   CLI::App* gallery = app.add_subcommand("gallery", "pictures and what they say about themselves as one HTML page");

@@ -57,6 +57,7 @@ struct InfoCommand {
 
 struct BenchCommand {
   std::vector<std::string> suites, views;
+  std::optional<IVec2> size_px;
   std::string json, markdown;
   bool quick = false;
 };

@@ -228,8 +228,8 @@ Json compare_picture(const Picture& picture, const BareJob& job, std::shared_ptr
 }
 
 Json bench_view(const BenchView& view, const TraceBenchOptions& options, const Context& context) {
-  const int rounds = options.quick ? 1 : 5;
-  const IVec2 size = options.quick ? view.size_px / 4 : view.size_px;
+  const int rounds = options.quick ? 1 : 3;
+  const IVec2 size = options.quick ? view.size_px / 4 : options.size_px.value_or(view.size_px);
   const std::shared_ptr<const World> world = World::build(view.scene, {}, context);
   const EmbreeScenes* scenes = embree_scenes(world->tracer());
   if (!scenes || !scenes->static_scene || scenes->top_scene) throw usage_error("bench trace needs views of static triangles");
