@@ -15,7 +15,10 @@ case "${1:-}" in
   "")
     base=HEAD~1
     if [[ $(git rev-parse --abbrev-ref HEAD) != main ]] && git rev-parse --verify -q main >/dev/null; then base=$(git merge-base main HEAD); fi
-    if ! git rev-parse --verify -q "$base" >/dev/null; then base=$(git hash-object -t tree /dev/null); fi
+    if ! git rev-parse --verify -q "$base" >/dev/null; then
+      echo "tidy: no earlier commit to compare with (use --all)"
+      exit 0
+    fi
     mapfile -t files < <(git diff --name-only --diff-filter=d "$base" -- 'src/*.cpp' 'apps/*.cpp')
     ;;
   *) files=("$@") ;;
