@@ -11,7 +11,7 @@ build_packages=(
   libembree-dev libtbb-dev libhwy-dev                                        # rays, tasks, vectors
   libopenexr-dev libpng-dev libjpeg62-turbo-dev libstb-dev zlib1g-dev        # pictures
   libglm-dev libeigen3-dev                                                   # mathematics
-  libtinygltf-dev libtinyobjloader-dev libfast-float-dev                     # scene files
+  libfast-float-dev                                                          # scene files
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                   # text in and out
   libzstd-dev libxxhash-dev                                                  # compression, hashing
 )

@@ -75,7 +75,7 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   FloatParam alpha{1.f};
-  bool two_sided = true;  ///< false: back faces are culled (seen through), as glTF's default
+  bool two_sided = true;  ///< as the file says; rays see both sides all the same (trace/tracer.h)
   MediumId interior;      ///< absorbing medium behind the surface
 };
 
