@@ -53,7 +53,7 @@ struct RenderJob {
   std::shared_ptr<const World> world;
   const View* view = nullptr;
   SettingsValue settings;
-  const Visibility* visibility = nullptr;
+  Visibility* visibility = nullptr;  ///< of this picture alone; a pass begins with Visibility::begin_pass
   const Bake* bake = nullptr;
   int max_bounces = 8;
   int light_samples = 0;        ///< 0 = the method's own

@@ -126,7 +126,7 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   if (samples.end > job.total_spp) throw usage_error(fmt::format("--sample-range ends at {}, but --spp is {}", samples.end, spp));
   const View view(camera, size_px, spp == 1 ? PixelFilter(PixelFilter::Kind::centre) : filter);
   job.view = &view;
-  const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility);
+  const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
   job.visibility = visibility.get();
   method.check(world->scene(), job);
 

@@ -36,6 +36,30 @@ Passage brute_force(const Mesh& mesh, const Vec3d& from, const Vec3d& direction,
   return passage;
 }
 
+/// One query by itself.
+struct Query {
+  Vec3 x{0}, x_normal{0};
+  float x_error = 0;
+  Vec3 y{0}, y_normal{0};
+  float y_error = 0;
+  QuerySemantic semantic = QuerySemantic::surface;
+};
+
+QueryBatch batch_of(const std::vector<Query>& queries) {
+  QueryBatch batch;
+  batch.eye.resize(queries.size());
+  batch.resize_lights(queries.size());
+  batch.resize_queries(queries.size());
+  for (std::uint32_t i = 0; i < queries.size(); ++i) {
+    const Query& q = queries[i];
+    batch.eye.set(i, q.x, q.x_normal, q.x_error, 0, i);
+    batch.light.set(i, q.y, q.y_normal, q.y_error, 0, i);
+    batch.semantic[i] = static_cast<std::uint8_t>(q.semantic);
+    batch.eye_of[i] = batch.light_of[i] = i;
+  }
+  return batch;
+}
+
 struct Setting {
   Mesh mesh;
   std::shared_ptr<const World> world;
@@ -46,13 +70,14 @@ struct Setting {
     mesh = triangle_soup(random, 150, 1, 0.3f);
     world = World::build(scene_of(mesh), {}, Context());
     const VisibilityInfo& info = find_visibility("exact");
-    visibility = info.make(world, info.settings);
+    visibility = info.make(world, info.settings, Context());
   }
   std::vector<float> ask(const std::vector<Query>& queries) const {
-    std::vector<float> weights(queries.size(), -1);
+    std::vector<float> weights(padded(queries.size()), -1);
     RayCounts rays;
     VisibilityCounts counts;
-    visibility->visible(queries, weights, rays, counts);
+    visibility->worker()->visible(batch_of(queries), weights, rays, counts);
+    weights.resize(queries.size());
     EXPECT_EQ(counts.queries, queries.size());
     EXPECT_EQ(counts.traced, queries.size());
     EXPECT_EQ(rays.occlusion, queries.size());
@@ -136,6 +161,40 @@ TEST(ExactVisibility, IsSymmetric) {
   int different = 0;
   for (std::size_t i = 0; i < a.size(); ++i) different += a[i] != b[i];
   EXPECT_LE(different, 2);
+}
+
+TEST(ExactVisibility, AWaveAnswersAsAWorkerDoes) {
+  const Setting s;
+  std::mt19937 random(5);
+  std::vector<Query> queries(100);
+  for (Query& q : queries) q.x = random_point(random, 1.2f), q.y = random_point(random, 1.2f);
+  const std::vector<float> expected = s.ask(queries);
+  const QueryBatch batch = batch_of(queries);
+  const std::unique_ptr<VisibilityWave> wave = s.visibility->wave(2);
+  RayCounts rays;
+  VisibilityCounts counts;
+  wave->look_up(0, batch, rays, counts);
+  wave->look_up(1, batch, rays, counts);
+  wave->trace(Context(), rays, counts);
+  std::vector<float> weights(padded(queries.size()));
+  wave->resolve(1, weights);
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), weights.begin()));
+}
+
+TEST(ExactVisibility, GapsAreNeitherAskedNorCounted) {
+  const Setting s;
+  std::vector<Query> queries(3);
+  for (Query& q : queries) q.x = Vec3(5, 5, 5), q.y = Vec3(6, 6, 6);
+  QueryBatch batch = batch_of(queries);
+  batch.light_of[1] = kNoQuery;
+  std::vector<float> weights(padded(queries.size()), -1);
+  RayCounts rays;
+  VisibilityCounts counts;
+  s.visibility->worker()->visible(batch, weights, rays, counts);
+  EXPECT_EQ(weights[0], 1);
+  EXPECT_EQ(weights[1], 0);
+  EXPECT_EQ(weights[2], 1);
+  EXPECT_EQ(counts.queries, 2u);
 }
 
 TEST(VisibilityTable, AnUnknownNameIsAUsageError) {

@@ -1,0 +1,59 @@
+#include "visibility/query_rays.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sightline {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // rays and answers stay in the L1 and L2 caches
+
+Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
+
+}  // namespace
+
+Ray query_ray(const QueryBatch& queries, std::size_t i) {
+  const std::size_t e = queries.eye_of[i], l = queries.light_of[i];
+  if (l == kNoQuery) return {Vec3(0), 0, Vec3(0, 0, 1), -1};
+  const Vec3 x = load(queries.eye.position, e), nx = load(queries.eye.normal, e), y = load(queries.light.position, l);
+  if (is_infinite(static_cast<QuerySemantic>(queries.semantic[l])))
+    return {offset_origin(x, nx, queries.eye.error[e], y), 0, y, std::numeric_limits<float>::infinity()};
+  const Vec3 towards = y - x;
+  const Vec3 origin = offset_origin(x, nx, queries.eye.error[e], towards);
+  const Vec3 target = offset_origin(y, load(queries.light.normal, l), queries.light.error[l], -towards);
+  return {origin, 0, target - origin, 1};
+}
+
+void make_query_rays(const QueryBatch& queries, std::span<const std::uint32_t> which, RayBatch& rays) {
+  rays.resize(which.size());
+  for (std::size_t k = 0; k < which.size(); ++k) rays.set(k, query_ray(queries, which[k]));
+}
+
+void QueryTracer::trace_all(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) {
+  occluded_.resize(std::max(occluded_.size(), kBlock));
+  std::uint64_t asked = 0;
+  for (std::size_t begin = 0; begin < queries.size; begin += kBlock) {
+    const std::size_t count = std::min(kBlock, queries.size - begin);
+    batch_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) batch_.set(k, query_ray(queries, begin + k));
+    world_->tracer().occluded(batch_, occluded_, queries.kind, rays);
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool gap = queries.light_of[begin + k] == kNoQuery;
+      asked += !gap;
+      weights[begin + k] = gap || occluded_[k] ? 0.f : 1.f;
+    }
+  }
+  counts.queries += asked;
+  counts.traced += asked;
+}
+
+std::span<const std::uint8_t> QueryTracer::trace(const QueryBatch& queries, std::span<const std::uint32_t> which, RayCounts& rays,
+                                                 VisibilityCounts& counts) {
+  make_query_rays(queries, which, batch_);
+  occluded_.resize(std::max(occluded_.size(), padded(which.size())));
+  world_->tracer().occluded(batch_, occluded_, BatchKind::shadow_diffuse, rays);
+  counts.traced += which.size();
+  return std::span(occluded_).first(which.size());
+}
+
+}  // namespace sightline
