@@ -26,6 +26,13 @@ enum class QuerySplit : std::uint8_t {
   symmetric,  ///< both ends alike: connections of path tracing [Popov2013, Eq. 6]
 };
 
+/// What the light ends of semantic `surface` of a batch are: a cache may allow each kind an error of its own.
+enum class SurfaceEnds : std::uint8_t {
+  area_light,     ///< points of emitting surfaces
+  virtual_light,  ///< virtual point lights
+  path_vertex,    ///< vertices of light sub-paths
+};
+
 /// Ends of queries on one side, structure of arrays, padded to kLanes. Several queries may share an end: its part of a cache key is then
 /// made once.
 struct QueryEnds {
@@ -60,6 +67,7 @@ struct QueryBatch {
   std::size_t size = 0;
   BatchKind kind = BatchKind::shadow_diffuse;
   QuerySplit split = QuerySplit::eye;
+  SurfaceEnds surface_ends = SurfaceEnds::area_light;
 
   void resize_lights(std::size_t n) {
     light.resize(n);
@@ -72,7 +80,7 @@ struct QueryBatch {
 };
 inline constexpr std::uint32_t kNoQuery = 0xffffffffu;
 
-/// What became of the queries. Rays that a visibility traces for other reasons than a miss (residual, building) are in `traced` too.
+/// What became of the queries. Rays of a residual are in `traced` too; those that fill maps stand apart.
 struct VisibilityCounts {
   static constexpr std::size_t kMaxDepth = 16;
   std::uint64_t queries = 0;                                 ///< asked
@@ -81,10 +89,13 @@ struct VisibilityCounts {
   std::uint64_t lookups = 0;                                 ///< of a table, neighbours included
   std::uint64_t rejected = 0;                                ///< slots that held another key (digest mismatch)
   std::uint64_t residual = 0;                                ///< rays of the unbiased residual
+  std::uint64_t filling = 0;                                 ///< rays that filled maps beforehand or on demand; not of any query
+  double filling_seconds = 0;                                ///< spent on them, summed over threads
   std::array<std::uint64_t, kMaxDepth> answered_at_depth{};  ///< cached answers by depth of refinement
 
   VisibilityCounts& operator+=(const VisibilityCounts& o) {
     queries += o.queries, traced += o.traced, cached += o.cached, lookups += o.lookups, rejected += o.rejected, residual += o.residual;
+    filling += o.filling, filling_seconds += o.filling_seconds;
     for (std::size_t d = 0; d < kMaxDepth; ++d) answered_at_depth[d] += o.answered_at_depth[d];
     return *this;
   }

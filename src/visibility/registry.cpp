@@ -2,6 +2,8 @@
 
 #include "base/core/error.h"
 #include "visibility/exact/exact.h"
+#include "visibility/nee_plus_plus/nee_plus_plus.h"
+#include "visibility/shadow_map/shadow_map.h"
 #include "visibility/visibility.h"
 
 namespace sightline {
@@ -9,6 +11,8 @@ namespace sightline {
 const std::vector<VisibilityInfo>& visibilities() {
   static const std::vector<VisibilityInfo> table = {
       exact_visibility(),
+      nee_plus_plus_visibility(),
+      shadow_map_visibility(),
   };
   return table;
 }
