@@ -89,10 +89,32 @@ Json method_json(const Method& method) {
           {"settings", settings_to_json(method.default_settings())}};
 }
 
+Json visibility_json(const VisibilityInfo& info) {
+  return {{"name", info.name},
+          {"help", info.help},
+          {"citation", info.citation},
+          {"binary", info.binary},
+          {"unbiased", info.unbiased},
+          {"deterministic", info.deterministic},
+          {"settings", settings_to_json(info.settings)}};
+}
+
+// "unbiased" or "not unbiased".
+std::string fact(std::string_view name, bool value) { return fmt::format("{}{}", value ? "" : "not ", name); }
+
+std::string heading(const std::string& name, const std::string& help, const std::string& citation) {
+  return citation.empty() ? fmt::format("{}: {}\n", name, help) : fmt::format("{}: {} [{}]\n", name, help, citation);
+}
+
+void print_visibility(const VisibilityInfo& info) {
+  fmt::print("{}", heading(info.name, info.help, info.citation));
+  fmt::print("  {}, {}, {}\n", fact("binary", info.binary), fact("unbiased", info.unbiased), fact("deterministic", info.deterministic));
+  print_settings(info.settings);
+}
+
 void print_method(const Method& method) {
   const MethodInfo& info = method.info();
-  fmt::print("{}: {} [{}]\n", info.name, info.help, info.citation);
-  const auto fact = [](std::string_view name, bool value) { return fmt::format("{}{}", value ? "" : "not ", name); };
+  fmt::print("{}", heading(info.name, info.help, info.citation));
   fmt::print("  {}, {}, {}, {}{}\n", fact("unbiased", info.unbiased), fact("consistent", info.consistent),
              fact("progressive", info.progressive), fact("deterministic", info.deterministic), info.needs_bake ? ", needs a bake" : "");
   print_settings(method.default_settings());
@@ -109,21 +131,19 @@ int run_methods(const CommandLine& line) {
   if (line.methods.json) {
     Json json;
     if (visibility) {
-      json = {{"name", visibility->name}, {"help", visibility->help}, {"settings", settings_to_json(visibility->settings)}};
+      json = visibility_json(*visibility);
     } else if (!name.empty()) {
       json = method_json(find_method(name));
     } else {
       json = {{"methods", Json::array()}, {"visibilities", Json::array()}};
       for (const Method* method : methods()) json["methods"].push_back(method_json(*method));
-      for (const VisibilityInfo& info : visibilities())
-        json["visibilities"].push_back({{"name", info.name}, {"help", info.help}, {"settings", settings_to_json(info.settings)}});
+      for (const VisibilityInfo& info : visibilities()) json["visibilities"].push_back(visibility_json(info));
     }
     fmt::print("{}\n", json.dump(2));
     return kDone;
   }
   if (visibility) {
-    fmt::print("{}: {}\n", visibility->name, visibility->help);
-    print_settings(visibility->settings);
+    print_visibility(*visibility);
   } else if (!name.empty()) {
     print_method(find_method(name));
   } else {

@@ -15,6 +15,19 @@ Json value_of_text(const std::string& text) {
   return parsed.is_number() || parsed.is_boolean() ? parsed : Json(text);
 }
 
+Json visibility_json(const VisibilityCounts& counts) {
+  // Depths beyond the last at which anything was answered say nothing.
+  std::size_t depths = counts.answered_at_depth.size();
+  while (depths > 0 && counts.answered_at_depth[depths - 1] == 0) --depths;
+  Json answered = Json::array();
+  for (std::size_t d = 0; d < depths; ++d) answered.push_back(counts.answered_at_depth[d]);
+  return {{"queries", counts.queries},    {"traced", counts.traced},
+          {"cached", counts.cached},      {"lookups", counts.lookups},
+          {"rejected", counts.rejected},  {"residual", counts.residual},
+          {"filling", counts.filling},    {"filling_seconds", counts.filling_seconds},
+          {"answered_at_depth", answered}};
+}
+
 }  // namespace
 
 Json settings_json(const std::vector<std::pair<std::string, std::string>>& settings, const Schema&) {
@@ -47,9 +60,7 @@ Json statistics_json(const RenderResult& result, const World& world, const Conte
   json["seconds"]["stages"] = Json::object();
   for (const auto& [name, seconds] : result.statistics.stage_seconds) json["seconds"]["stages"][name] = seconds;
   json["rays"] = {{"closest", result.statistics.rays.closest}, {"occlusion", result.statistics.rays.occlusion}};
-  json["visibility"] = {{"queries", result.statistics.visibility.queries},
-                        {"traced", result.statistics.visibility.traced},
-                        {"cached", result.statistics.visibility.cached}};
+  json["visibility"] = visibility_json(result.statistics.visibility);
   json["memory"] = {{"peak_rss_bytes", peak_resident_bytes()},    {"scene_bytes", scene_bytes(world.scene())},
                     {"accel_bytes", world.acceleration_bytes()},  {"accel_peak_bytes", world.tracer().memory().peak_build_bytes},
                     {"frame_bytes", result.frame.memory_bytes()}, {"bake_bytes", 0}};

@@ -537,7 +537,8 @@ class Statistics(ProgramTest):
         "sightline": str, "method": str, "settings": dict, "scene": {"triangles": int, "instances": int, "lights": int}, "size": list, "threads": int,
         "simd": str,
         "seconds": {"load": float, "build": float, "prepare": float, "render": float, "write": float, "total": float, "stages": dict},
-        "rays": {"closest": int, "occlusion": int}, "visibility": {"queries": int, "traced": int, "cached": int},
+        "rays": {"closest": int, "occlusion": int}, "visibility": {"queries": int, "traced": int, "cached": int, "lookups": int, "rejected": int, "residual": int, "filling": int,
+                       "filling_seconds": float, "answered_at_depth": list},
         "memory": {"peak_rss_bytes": int, "scene_bytes": int, "accel_bytes": int, "bake_bytes": int},
         "image": {"mean_luminance": float, "nonfinite_pixels": int}, "method_statistics": dict,
         # Beyond the list that all methods share.
@@ -679,6 +680,33 @@ class Methods(ProgramTest):
                     shown = str(default).lower() if isinstance(default, bool) else str(default)
                     self.assertIn(f"{setting['name']}={shown}", text)
 
+    def test_visibilities_state_their_facts(self):
+        facts = {entry["name"]: entry for entry in json.loads(self.ok("methods", "--json").out)["visibilities"]}
+        for name, entry in facts.items():
+            self.assertEqual(json.loads(self.ok("methods", name, "--json").out), entry)
+            text = self.ok("methods", name).out.decode()
+            self.assertIn(entry["help"], text)
+            self.assertIn(entry["citation"], text)
+            for fact in ("binary", "unbiased", "deterministic"):
+                self.assertIs(entry[fact], f"not {fact}" not in text, f"{name}: {fact}")
+                self.assertIn(fact, text)
+            self.assertIn(name, self.ok("methods").out.decode())
+        self.assertTrue(facts["exact"]["unbiased"] and facts["exact"]["binary"])
+        self.assertFalse(facts["shadow-map"]["unbiased"])
+        self.assertTrue(facts["nee++"]["unbiased"])
+        self.assertFalse(facts["nee++"]["binary"])
+
+    def test_every_setting_of_a_visibility_can_be_set(self):
+        for visibility in json.loads(self.ok("methods", "--json").out)["visibilities"]:
+            for setting in visibility["settings"]:
+                for value in setting.get("choices", [setting["default"]]):
+                    text = str(value).lower() if isinstance(value, bool) else str(value)
+                    self.ok("render", "builtin:cornell", "--visibility", visibility["name"], "--set", f"{setting['name']}={text}", "--size", "8x8",
+                            "--spp", "2", "-o", "a.png", "--stats", "a.json")
+                    statistics = self.json("a.json")
+                    self.assertEqual(statistics["visibility_name"], visibility["name"])
+                    self.assertEqual(statistics["settings"][setting["name"]], value)
+
     def test_every_setting_can_be_set(self):
         for method in json.loads(self.ok("methods", "--json").out)["methods"]:
             for setting in method["settings"]:
@@ -694,6 +722,8 @@ class Methods(ProgramTest):
         text = "\n".join(page.read_text() for page in docs.rglob("*.md"))
         for method in json.loads(self.ok("methods", "--json").out)["methods"]:
             self.assertIn(f"`{method['name']}`", text)
+        for visibility in json.loads(self.ok("methods", "--json").out)["visibilities"]:
+            self.assertIn(f"`{visibility['name']}`", text)
         page = (docs / "cli.md").read_text()
         for command in COMMANDS:
             self.assertIn(f"`{command}", page)
