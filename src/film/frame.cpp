@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/core/error.h"
+#include "film/block_sum.h"
 
 namespace sightline {
 
@@ -23,6 +24,7 @@ Frame& Frame::operator=(Frame&& other) noexcept {
   width_ = other.width_, height_ = other.height_, tiles_x_ = other.tiles_x_;
   aovs_ = other.aovs_, first_sample_ = other.first_sample_;
   sums_ = std::move(other.sums_);
+  light_image_ = std::move(other.light_image_);
   samples_done_ = std::move(other.samples_done_);
   nonfinite_ = other.nonfinite_.load(), saturated_ = other.saturated_.load(), bad_sample_ = other.bad_sample_.load();
   return *this;
@@ -44,14 +46,18 @@ std::uint32_t Frame::samples_done() const {
   return samples_done_.empty() ? 0 : *std::min_element(samples_done_.begin(), samples_done_.end());
 }
 
+void Frame::count_bad_sample(std::uint32_t pixel, std::uint32_t sample) {
+  nonfinite_.fetch_add(1, std::memory_order_relaxed);
+  // Keep the smallest (pixel, sample), so that the report does not depend on threads.
+  const std::uint64_t code = (std::uint64_t{pixel} << 32) | sample;
+  std::uint64_t seen = bad_sample_.load(std::memory_order_relaxed);
+  while (code < seen && !bad_sample_.compare_exchange_weak(seen, code)) {
+  }
+}
+
 void Frame::add_color(std::uint32_t pixel, std::uint32_t sample, const Color& radiance) {
   if (!is_finite(radiance)) {
-    nonfinite_.fetch_add(1, std::memory_order_relaxed);
-    // Keep the smallest (pixel, sample), so that the report does not depend on threads.
-    const std::uint64_t code = (std::uint64_t{pixel} << 32) | sample;
-    std::uint64_t seen = bad_sample_.load(std::memory_order_relaxed);
-    while (code < seen && !bad_sample_.compare_exchange_weak(seen, code)) {
-    }
+    count_bad_sample(pixel, sample);
     return;
   }
   ExactSum* sum = &sums_[0][std::size_t{3} * pixel];
@@ -70,6 +76,70 @@ void Frame::add(Aov aov, std::uint32_t pixel, const Vec3& value) {
   if (sums.empty() || !is_finite(value)) return;
   const std::size_t channels = aov_info(aov).channels.size();
   for (std::size_t c = 0; c < channels; ++c) sums[pixel * channels + c].add(value[static_cast<int>(c)]);
+}
+
+// Adds the samples of a block with integers of 64 bits; false where only single additions are exact.
+bool Frame::add_exactly(Aov aov, const PixelBlock& block) {
+  if (block.count > kMaxBlockSamples) return false;
+  const std::size_t channels = aov_info(aov).channels.size();
+  alignas(kCacheLine) std::array<std::array<std::int64_t, kLanes>, 3> block_sums;
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (!sum_block(block.channel[c], block.count, block_sums[c].data())) return false;
+  }
+  std::vector<ExactSum>& sums = sums_[static_cast<std::size_t>(aov)];
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if (!block.inside[lane]) continue;
+    for (std::size_t c = 0; c < channels; ++c)
+      sums[channels * block.pixel[lane] + c].value += Int128(block_sums[c][lane]) * (Int128(1) << (64 - kBlockSumBits));
+  }
+  return true;
+}
+
+void Frame::add_color(const PixelBlock& block) {
+  if (!aovs_.has(Aov::variance) && add_exactly(Aov::color, block)) return;
+  for (std::size_t i = 0; i < kLanes * block.count; ++i) {
+    const std::size_t lane = i % kLanes;
+    if (!block.inside[lane]) continue;
+    add_color(block.pixel[lane], block.first_sample + static_cast<std::uint32_t>(i / kLanes),
+              {block.channel[0][i], block.channel[1][i], block.channel[2][i]});
+  }
+}
+
+void Frame::add(Aov aov, const PixelBlock& block) {
+  if (!aovs_.has(aov) || add_exactly(aov, block)) return;
+  for (std::size_t i = 0; i < kLanes * block.count; ++i) {
+    const std::size_t lane = i % kLanes;
+    if (block.inside[lane]) add(aov, block.pixel[lane], {block.channel[0][i], block.channel[1][i], block.channel[2][i]});
+  }
+}
+
+void Frame::enable_light_image() {
+  for (const Aov aov : {Aov::color, Aov::direct, Aov::indirect}) light_image_[static_cast<std::size_t>(aov)].resize(sums(aov).size());
+}
+
+void Frame::splat(std::uint32_t pixel, std::uint32_t sample, const Color& value, bool direct) {
+  if (!is_finite(value)) {
+    count_bad_sample(pixel, sample);
+    return;
+  }
+  for (const Aov aov : {Aov::color, direct ? Aov::direct : Aov::indirect}) {
+    const std::span<ExactSum> sums = light_image_sums(aov);
+    if (sums.empty()) continue;
+    bool in_range = true;
+    for (int c = 0; c < 3; ++c) in_range &= sums[std::size_t{3} * pixel + static_cast<std::size_t>(c)].add(value[c]);
+    if (!in_range && aov == Aov::color) saturated_.fetch_add(1, std::memory_order_relaxed);
+  }
+  // Rare arrivals: their number varies as they do, and the variance of their sum is the sum of their squares.
+  if (aovs_.has(Aov::variance)) {
+    const float y = luminance(value);
+    sums_[static_cast<std::size_t>(Aov::variance)][pixel].add(y * y);
+  }
+}
+
+double Frame::mean_samples_done() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < samples_done_.size(); ++i) sum += static_cast<double>(samples_done_[i]) * tile(i).pixel_count();
+  return sum / (static_cast<double>(width_) * height_);
 }
 
 Vec3 Frame::value(Aov aov, std::uint32_t pixel) const {

@@ -34,6 +34,15 @@ struct Tile {
   int pixel_count() const { return (x1 - x0) * (y1 - y0); }
 };
 
+/// Consecutive samples of 16 pixels, sample by sample: value c of sample first_sample + s in pixel lane l is channel[c][16 s + l], 64-byte
+/// aligned. Lanes that are not `inside` are dropped.
+struct PixelBlock {
+  const std::uint32_t* pixel;
+  const std::uint8_t* inside;
+  std::uint32_t first_sample, count;
+  std::array<const float*, 3> channel;
+};
+
 /// Tiles are the unit of completion: a tile has all samples [range().begin, range().begin + done(tile)) or it would not say so. Different
 /// tiles may be written by different threads at the same time; everything else is for one thread.
 class Frame {
@@ -56,8 +65,22 @@ class Frame {
 
   /// Adds one sample's radiance; a non-finite one is dropped and counted. `sample` is for the report only.
   void add_color(std::uint32_t pixel, std::uint32_t sample, const Color& radiance);
+  /// The same for the samples of a block.
+  void add_color(const PixelBlock& block);
   /// Adds one sample's value to a layer other than colour, if the frame has it.
   void add(Aov aov, std::uint32_t pixel, const Vec3& value);
+  /// The same for the samples of a block.
+  void add(Aov aov, const PixelBlock& block);
+
+  /// The light image: light that arrives at pixels from elsewhere than their own samples. Kept apart from the samples' sums, since while
+  /// tiles have different numbers of samples it is the mean over all of them that it belongs to. Layers colour, direct and indirect.
+  void enable_light_image();
+  bool has_light_image() const { return !light_image_[0].empty(); }
+  /// Adds to the light image what one path carried to a pixel of any tile; a non-finite value is dropped and counted. For one thread, while
+  /// no other adds anything; enable_light_image() comes first.
+  void splat(std::uint32_t pixel, std::uint32_t sample, const Color& value, bool direct);
+  /// Samples a pixel, mean over all tiles.
+  double mean_samples_done() const;
 
   /// Means.
   Color color(std::uint32_t pixel) const;
@@ -80,18 +103,22 @@ class Frame {
   /// Raw sums for files; channel-major within a pixel. (See frame_file.h.)
   std::span<const ExactSum> sums(Aov aov) const { return sums_[static_cast<std::size_t>(aov)]; }
   std::span<ExactSum> sums(Aov aov) { return sums_[static_cast<std::size_t>(aov)]; }
+  std::span<const ExactSum> light_image_sums(Aov aov) const { return light_image_[static_cast<std::size_t>(aov)]; }
+  std::span<ExactSum> light_image_sums(Aov aov) { return light_image_[static_cast<std::size_t>(aov)]; }
   std::span<const std::uint32_t> samples_per_tile() const { return samples_done_; }
 
   Frame(Frame&& other) noexcept;
   Frame& operator=(Frame&& other) noexcept;
 
  private:
+  bool add_exactly(Aov aov, const PixelBlock& block);
   std::uint32_t tile_of_pixel(std::uint32_t pixel) const;
+  void count_bad_sample(std::uint32_t pixel, std::uint32_t sample);
 
   int width_ = 0, height_ = 0, tiles_x_ = 0;
   AovSet aovs_;
   std::uint32_t first_sample_ = 0;
-  std::array<std::vector<ExactSum>, kAovCount> sums_;
+  std::array<std::vector<ExactSum>, kAovCount> sums_, light_image_;
   std::vector<std::uint32_t> samples_done_;
   std::atomic<std::uint64_t> nonfinite_{0}, saturated_{0}, bad_sample_{~std::uint64_t{0}};
 };

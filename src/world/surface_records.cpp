@@ -109,6 +109,9 @@ SurfaceTables make_surface_tables(const Scene& scene, const Placement& placement
       const float scale = std::max({glm::length(x), glm::length(y), glm::length(z)});
       const Vec3 a = x / scale, b = y / scale, c = z / scale;
       record.normal_matrix = record.winding * Mat3(glm::cross(b, c), glm::cross(c, a), glm::cross(a, b));
+      constexpr std::size_t kMaxGather = std::size_t{1} << 29;
+      record.gathers = !record.transforms && !(record.normals && record.transforms_normals) && placed.positions.size() < kMaxGather &&
+                       placed.triangles.size() < kMaxGather;
       if (record.transforms) {
         record.linear = Mat3(x, y, z);
         record.translation = Vec3(placed.world_from_object[3]);

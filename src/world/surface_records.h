@@ -31,7 +31,8 @@ struct InstanceRecord {
   bool transforms = false;                            ///< positions are in object space
   bool transforms_normals = false;
   bool emits = false;
-  float winding = 1;  ///< -1 where the transform mirrors
+  bool gathers = false;  ///< vector code may gather its vertices: in world space, offsets of 31 bits
+  float winding = 1;     ///< -1 where the transform mirrors
   std::uint32_t palette_size = 1;
   Mat3 linear{1};  ///< of world_from_object, if `transforms`
   Vec3 translation{0};

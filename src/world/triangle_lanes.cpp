@@ -48,6 +48,49 @@ HWY_INLINE M mask_of(D d, std::uint16_t bits, std::size_t i) {
   return hn::RebindMask(d, hn::Ne(hn::And(hn::Set(du, bits), bit), hn::Zero(du)));
 }
 
+// Lanes outside the mask take the first vertex' data: any address that can be read.
+void GatherLanes(const InstanceRecord& record, const std::uint32_t* HWY_RESTRICT primitives, std::uint16_t mask, TriangleLanes& lanes) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  const auto three = hn::Set(di, 3);
+  const auto* indices = reinterpret_cast<const std::int32_t*>(record.triangles);
+  const auto* positions = reinterpret_cast<const float*>(record.positions);
+  const auto* normals = reinterpret_cast<const float*>(record.normals);
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const M active = mask_of(d, mask, i);
+    if (hn::AllFalse(d, active)) continue;
+    const auto primitive = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(primitives) + i);
+    const auto triangle = hn::Mul(hn::IfThenElseZero(hn::RebindMask(di, active), primitive), three);
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto vertex = hn::Mul(hn::GatherIndex(di, indices + corner, triangle), three);
+      for (int axis = 0; axis < 3; ++axis) {
+        hn::BlendedStore(hn::GatherIndex(d, positions + axis, vertex), active, d, lanes.p[corner][axis] + i);
+        if (normals) hn::BlendedStore(hn::GatherIndex(d, normals + axis, vertex), active, d, lanes.n[corner][axis] + i);
+      }
+    }
+    hn::BlendedStore(hn::Set(d, record.winding), active, d, lanes.winding + i);
+  }
+  lanes.active = static_cast<std::uint16_t>(lanes.active | mask);
+  if (normals) lanes.smooth = static_cast<std::uint16_t>(lanes.smooth | mask);
+}
+
+void SetMaterialLanes(const MaterialRecord& material, std::uint16_t mask, std::size_t begin, SurfaceBatch& surfaces) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
+    const M active = mask_of(d, mask, i);
+    const auto active_u = hn::RebindMask(du, active);
+    hn::BlendedStore(hn::Set(du, material.material), active_u, du, surfaces.material.data() + begin + i);
+    hn::BlendedStore(hn::Set(du, kNoLight), active_u, du, surfaces.light.data() + begin + i);
+    store3(d, active, {hn::Set(d, material.albedo.x), hn::Set(d, material.albedo.y), hn::Set(d, material.albedo.z)}, surfaces.albedo,
+           begin + i);
+  }
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    std::uint8_t& plain = surfaces.plain[begin + i];
+    plain = (mask >> i) & 1 ? material.plain : plain;
+  }
+}
+
 // Hits so close to an edge that inside_by may move them: rare, and left to the scalar definition. Squares avoid the roots; the slack makes
 // up for their rounding.
 HWY_INLINE M near_an_edge(D d, V margin, V u, V v, const V3& edge1, const V3& edge2, V area2) {
@@ -110,7 +153,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline {
+HWY_EXPORT(GatherLanes);
 HWY_EXPORT(ReconstructLanes);
+HWY_EXPORT(SetMaterialLanes);
+
+void gather_lanes(const InstanceRecord& record, const std::uint32_t* primitives, std::uint16_t mask, TriangleLanes& lanes) {
+  HWY_DYNAMIC_DISPATCH(GatherLanes)(record, primitives, mask, lanes);
+}
+
+void set_material_lanes(const MaterialRecord& material, std::uint16_t mask, std::size_t begin, SurfaceBatch& surfaces) {
+  HWY_DYNAMIC_DISPATCH(SetMaterialLanes)(material, mask, begin, surfaces);
+}
 
 std::uint16_t reconstruct_lanes(const TriangleLanes& lanes, const float* u, const float* v, std::size_t begin, SurfaceBatch& surfaces) {
   return HWY_DYNAMIC_DISPATCH(ReconstructLanes)(lanes, u, v, begin, surfaces);

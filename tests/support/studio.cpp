@@ -43,7 +43,7 @@ void expose_range(const Shot& shot, const Exposure& exposure, SampleRange range,
   job.light_samples = exposure.light_samples;
   job.total_spp = static_cast<std::uint32_t>(exposure.spp);
   const VisibilityInfo& info = find_visibility(method.default_visibility());
-  const std::unique_ptr<Visibility> visibility = info.make(shot.world, info.settings);
+  const std::unique_ptr<Visibility> visibility = info.make(shot.world, info.settings, context);
   job.visibility = visibility.get();
   const std::unique_ptr<const Bake> bake = method.prepare(job, context);
   job.bake = bake.get();

@@ -15,17 +15,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<std::uint32_t, 16>;
 using V = hn::Vec<D>;
 
+// Half bytes through a table, then the bytes of each word in reverse.
 HWY_INLINE V reverse_bits_v(D d, V x) {
-  x = hn::Or(hn::ShiftRight<16>(x), hn::ShiftLeft<16>(x));
-  const auto step = [&]<int kShift>(std::uint32_t mask, std::integral_constant<int, kShift>) {
-    const V m = hn::Set(d, mask);
-    x = hn::Or(hn::ShiftLeft<kShift>(hn::And(x, m)), hn::And(hn::ShiftRight<kShift>(x), m));
-  };
-  step(0x00ff00ffu, std::integral_constant<int, 8>{});
-  step(0x0f0f0f0fu, std::integral_constant<int, 4>{});
-  step(0x33333333u, std::integral_constant<int, 2>{});
-  step(0x55555555u, std::integral_constant<int, 1>{});
-  return x;
+  const hn::Repartition<std::uint8_t, D> db;
+  alignas(16) constexpr std::uint8_t kReversed[16] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+  alignas(16) constexpr std::uint8_t kReversedHigh[16] = {0x00, 0x80, 0x40, 0xc0, 0x20, 0xa0, 0x60, 0xe0,
+                                                          0x10, 0x90, 0x50, 0xd0, 0x30, 0xb0, 0x70, 0xf0};
+  alignas(16) constexpr std::uint8_t kSwapBytes[16] = {3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12};
+  const V low_half = hn::Set(d, 0x0f0f0f0fu);
+  const auto low = hn::BitCast(db, hn::And(x, low_half)), high = hn::BitCast(db, hn::And(hn::ShiftRight<4>(x), low_half));
+  const auto reversed =
+      hn::Or(hn::TableLookupBytes(hn::LoadDup128(db, kReversedHigh), low), hn::TableLookupBytes(hn::LoadDup128(db, kReversed), high));
+  return hn::BitCast(d, hn::TableLookupBytes(reversed, hn::LoadDup128(db, kSwapBytes)));
 }
 
 HWY_INLINE V hash32_v(D d, V x) {

@@ -24,10 +24,23 @@ float power_heuristic(float n_pdf, float other) {
 
 Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 void store(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
+void add(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] += v.x, batch.y[i] += v.y, batch.z[i] += v.z; }
 void fill(Vec3Batch& batch, std::size_t first, std::size_t count, const Vec3& v) {
   std::fill_n(batch.x.data() + first, count, v.x);
   std::fill_n(batch.y.data() + first, count, v.y);
   std::fill_n(batch.z.data() + first, count, v.z);
+}
+
+// Which lanes are a surface, and which of those a plain one; true if all are.
+bool classify(const std::uint32_t* __restrict instance, const std::uint8_t* __restrict is_plain, std::size_t count,
+              std::uint8_t* __restrict shaded, std::uint8_t* __restrict plain) {
+  unsigned others = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto hit = static_cast<std::uint8_t>(instance[i] != kNoHit);
+    shaded[i] = hit, plain[i] = static_cast<std::uint8_t>(hit & is_plain[i]);
+    others |= static_cast<unsigned>(hit & (is_plain[i] ^ 1));
+  }
+  return others == 0;
 }
 
 // A block of 4x4 pixels makes a packet of 16 rays.
@@ -84,12 +97,7 @@ void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame
         if (options_.one_hit || (bounce + 1 == last && !bsdf_sampling_finds_lights_)) break;
         scatter(bounce);
       }
-      for (std::size_t path = 0; path < path_count_; ++path) {
-        if (!in_picture_[path]) continue;
-        frame.add_color(pixel_[path], sample_[path], direct_[path] + indirect_[path]);
-        frame.add(Aov::direct, pixel_[path], direct_[path]);
-        frame.add(Aov::indirect, pixel_[path], indirect_[path]);
-      }
+      finish_paths(frame);
     }
   }
   statistics.rays += counts_;
@@ -97,9 +105,30 @@ void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame
   statistics.visibility.traced += counts_.occlusion;
 }
 
+// Every block of pixels has its samples side by side: the film takes them in one go.
+void PathKernel::finish_paths(Frame& frame) {
+  const auto channels = [](const Vec3Batch& batch, std::size_t at) {
+    return std::array<const float*, 3>{batch.x.data() + at, batch.y.data() + at, batch.z.data() + at};
+  };
+  for (std::size_t at = 0; at < path_count_; at += samples_a_block_ * kLanes) {
+    PixelBlock block{pixel_.data() + at, in_picture_.data() + at, sample_[at], static_cast<std::uint32_t>(samples_a_block_), {}};
+    block.channel = channels(direct_, at), frame.add(Aov::direct, block);
+    block.channel = channels(indirect_, at), frame.add(Aov::indirect, block);
+  }
+  const auto sum = [this](AlignedVector<float> Vec3Batch::* axis) {
+    float* to = (direct_.*axis).data();
+    const float* from = (indirect_.*axis).data();
+    for (std::size_t i = 0; i < path_count_; ++i) to[i] += from[i];
+  };
+  sum(&Vec3Batch::x), sum(&Vec3Batch::y), sum(&Vec3Batch::z);
+  for (std::size_t at = 0; at < path_count_; at += samples_a_block_ * kLanes)
+    frame.add_color(
+        {pixel_.data() + at, in_picture_.data() + at, sample_[at], static_cast<std::uint32_t>(samples_a_block_), channels(direct_, at)});
+}
+
 void PathKernel::start_paths(const Tile& tile, std::span<const IVec2> blocks, SampleRange samples) {
   // The packet that a camera ray travels in is made of its block and sample alone, whatever else is rendered with it.
-  path_count_ = 0;
+  path_count_ = 0, samples_a_block_ = samples.count();
   for (const IVec2& block : blocks) {
     std::array<std::uint32_t, kLanes> pixel, key;
     std::array<std::uint8_t, kLanes> inside;
@@ -123,15 +152,14 @@ void PathKernel::start_paths(const Tile& tile, std::span<const IVec2> blocks, Sa
   view_.primary_rays(pixel_.data(), u0_.data(), u1_.data(), u2_.data(), u3_.data(), alive_,
                      {rays_.origin.x.data(), rays_.origin.y.data(), rays_.origin.z.data(), rays_.direction.x.data(),
                       rays_.direction.y.data(), rays_.direction.z.data()});
-  for (std::size_t i = 0; i < alive_; ++i) {
-    rays_.t_near[i] = 0, rays_.t_far[i] = in_picture_[i] ? kInfinity : -1.f;
-    slot_[i] = static_cast<std::uint32_t>(i);
-    store(throughput_, i, Color(1));
-    direct_[i] = indirect_[i] = Color(0);
-    bsdf_pdf_[i] = -1;
-    medium_[i] = {};
-    cone_width_[i] = view_.cone_width(), cone_spread_[i] = view_.cone_spread();
-  }
+  for (std::size_t i = 0; i < alive_; ++i) rays_.t_far[i] = in_picture_[i] ? kInfinity : -1.f;
+  std::fill_n(rays_.t_near.data(), alive_, 0.f);
+  std::iota(slot_.begin(), slot_.begin() + static_cast<std::ptrdiff_t>(alive_), 0u);
+  fill(throughput_, 0, alive_, Color(1));
+  fill(direct_, 0, alive_, Color(0)), fill(indirect_, 0, alive_, Color(0));
+  std::fill_n(bsdf_pdf_.begin(), alive_, -1.f);
+  std::fill_n(medium_.begin(), alive_, MediumId{});
+  std::fill_n(cone_width_.begin(), alive_, view_.cone_width()), std::fill_n(cone_spread_.begin(), alive_, view_.cone_spread());
 }
 
 void PathKernel::trace(std::uint32_t bounce) {
@@ -139,16 +167,24 @@ void PathKernel::trace(std::uint32_t bounce) {
   world_.surfaces(rays_, hits_, surfaces_);
 }
 
-void PathKernel::add_radiance(std::uint32_t slot, bool direct, const Color& value) { (direct ? direct_ : indirect_)[slot] += value; }
+void PathKernel::add_radiance(std::uint32_t slot, bool direct, const Color& value) { add(direct ? direct_ : indirect_, slot, value); }
+
+// Beer-Lambert along the rays that travelled inside an absorbing medium.
+void PathKernel::absorb() {
+  for (std::size_t i = 0; i < alive_; ++i) {
+    if (hits_.hit(i) && medium_[i].valid())
+      store(throughput_, i, load(throughput_, i) * glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]));
+  }
+}
 
 void PathKernel::add_emission(std::uint32_t bounce) {
   const LightTable& lights = world_.lights();
+  if (!world_.scene().media.empty()) absorb();
   for (std::size_t i = 0; i < alive_; ++i) {
+    if (surfaces_.light[i] == kNoLight && (hits_.hit(i) || !lights.has_environment())) continue;
     const Vec3 direction = load(rays_.direction, i);
-    if (hits_.hit(i) && medium_[i].valid())
-      store(throughput_, i, load(throughput_, i) * glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]));
     if (!hits_.hit(i)) {
-      if (!lights.has_environment() || !in_picture_[slot_[i]]) continue;
+      if (!in_picture_[slot_[i]]) continue;
       float weight = 1;
       if (bsdf_pdf_[i] >= 0)
         weight = power_heuristic(bsdf_pdf_[i], static_cast<float>(options_.light_samples) *
@@ -156,7 +192,6 @@ void PathKernel::add_emission(std::uint32_t bounce) {
       add_radiance(slot_[i], bounce <= 1, load(throughput_, i) * lights.environment(direction) * weight);
       continue;
     }
-    if (surfaces_.light[i] == kNoLight) continue;
     const Vec3 normal = load(surfaces_.geometric_normal, i);
     const bool front = glm::dot(normal, direction) < 0;
     TexturePoint texture;
@@ -178,12 +213,12 @@ void PathKernel::evaluate_materials(std::uint32_t bounce) {
   bool mix = false;
   for (const Material& material : scene.materials) mix |= std::holds_alternative<MixMaterial>(material.model);
   if (mix) {
-    for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+    gather_keys(bounce);
     sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPick), alive_, u0_.data(), u1_.data());
   }
+  all_plain_ = classify(hits_.instance.data(), surfaces_.plain.data(), alive_, shaded_.data(), plain_.data());
+  if (all_plain_) return;
   for (std::size_t i = 0; i < alive_; ++i) {
-    shaded_[i] = hits_.hit(i);
-    plain_[i] = shaded_[i] && surfaces_.plain[i];
     if (!shaded_[i] || plain_[i]) continue;  // the vector path needs no more than the surface says
     const Vec3 wo = -load(rays_.direction, i);
     const Vec3 geometric = load(surfaces_.geometric_normal, i);
@@ -222,6 +257,16 @@ void PathKernel::sample_lights(std::uint32_t bounce) {
     sample_lights_often(bounce);
 }
 
+// Keys and sample indices of the living paths. Before the first bounce they stand in order.
+void PathKernel::gather_keys(std::uint32_t bounce) {
+  if (bounce == 0) {
+    std::copy_n(key_.data(), alive_, scratch_key_.data());
+    std::copy_n(sample_.data(), alive_, scratch_index_.data());
+    return;
+  }
+  for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+}
+
 void PathKernel::draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals) {
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLightPoint), count, u0_.data(), u1_.data());
   if (world_.lights().size() > 1)
@@ -231,12 +276,12 @@ void PathKernel::draw_light_samples(std::uint32_t bounce, std::size_t count, con
 
 // One light sample a point: lanes are the points themselves, nothing is copied.
 void PathKernel::sample_lights_once(std::uint32_t bounce) {
-  for (std::size_t i = 0; i < alive_; ++i) scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
+  gather_keys(bounce);
   draw_light_samples(bounce, alive_, surfaces_.position, surfaces_.geometric_normal);
   shadow_.count = 0;
   shadow_.in_place = coherent_shadows(bounce);
   append_direct_light_each({&rays_, &surfaces_, &throughput_}, 0, light_, alive_, plain_.data(), {1, !options_.one_hit}, shadow_);
-  for (std::size_t i = 0; i < alive_; ++i) {
+  for (std::size_t i = 0; i < alive_ && !all_plain_; ++i) {
     if (!shaded_[i] || plain_[i] || bsdf_[i].is_delta()) continue;
     if (shadow_.in_place)
       set_general(i, i, i);
@@ -340,8 +385,13 @@ void PathKernel::trace_shadows(std::uint32_t bounce) {
   if (shadow_.count == 0) return;
   shadow_.rays.size = shadow_.count;
   world_.tracer().occluded(shadow_.rays, std::span(occluded_), shadow_.in_place ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
+  Vec3Batch& radiance = bounce == 0 ? direct_ : indirect_;
+  if (bounce == 0 && shadow_.in_place && options_.light_samples == 1) {
+    // Before the first bounce the path of lane i is i.
+    add_visible(shadow_, occluded_.data(), alive_, radiance);
+    return;
+  }
   // Samples of one point stand side by side: sum them before going to the path.
-  std::vector<Color>& radiance = bounce == 0 ? direct_ : indirect_;
   for (std::size_t r = 0; r < shadow_.count;) {
     const std::uint32_t point = shadow_.point[r];
     Color sum(0);
@@ -349,18 +399,14 @@ void PathKernel::trace_shadows(std::uint32_t bounce) {
       const float visible = occluded_[r] ? 0.f : 1.f;
       sum += visible * load(shadow_.contribution, r);
     }
-    radiance[slot_[point]] += sum;
+    add(radiance, slot_[point], sum);
   }
 }
 
 void PathKernel::scatter(std::uint32_t bounce) {
-  bool all_plain = true;
-  for (std::size_t i = 0; i < alive_; ++i) {
-    scratch_key_[i] = key_[slot_[i]], scratch_index_[i] = sample_[slot_[i]];
-    all_plain &= plain_[i] || !shaded_[i];
-  }
+  gather_keys(bounce);
   // Plain surfaces have one lobe; its number, and the roulette's, are drawn only where someone reads them.
-  if (!all_plain || static_cast<int>(bounce) >= options_.roulette_start)
+  if (!all_plain_ || static_cast<int>(bounce) >= options_.roulette_start)
     sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());
 

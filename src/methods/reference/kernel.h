@@ -32,17 +32,20 @@ class PathKernel {
   void render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics);
 
  private:
-  static constexpr std::size_t kBatch = 2048;
+  static constexpr std::size_t kBatch = 1024;
   /// Light samples worked off at a time: what the light batch and the shadow rays need stays in the L2 cache.
   static constexpr std::size_t kLightChunk = 512;
 
   void start_paths(const Tile& tile, std::span<const IVec2> blocks, SampleRange samples);
+  void finish_paths(Frame& frame);
   void trace(std::uint32_t bounce);
+  void absorb();
   void add_emission(std::uint32_t bounce);
   void evaluate_materials(std::uint32_t bounce);
   void sample_lights(std::uint32_t bounce);
   void sample_lights_once(std::uint32_t bounce);
   void sample_lights_often(std::uint32_t bounce);
+  void gather_keys(std::uint32_t bounce);
   void draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals);
   bool coherent_shadows(std::uint32_t bounce) const;
   void set_inactive(std::size_t at, std::size_t point);
@@ -58,10 +61,10 @@ class PathKernel {
   bool bsdf_sampling_finds_lights_;
 
   // One element a path, for its whole life.
-  std::size_t path_count_ = 0;
+  std::size_t path_count_ = 0, samples_a_block_ = 0;
   AlignedVector<std::uint32_t> pixel_, sample_, key_;
   AlignedVector<std::uint8_t> in_picture_;  ///< 0: fills up a block that sticks out of the tile
-  std::vector<Color> direct_, indirect_;
+  Vec3Batch direct_, indirect_;             ///< radiance so far
 
   // One element a living path, compacted after each bounce.
   std::size_t alive_ = 0;
@@ -79,6 +82,7 @@ class PathKernel {
   std::vector<Bsdf> bsdf_;
   std::vector<Frame3> frame_;
   AlignedVector<std::uint8_t> shaded_;  ///< 1: a surface with a BSDF
+  bool all_plain_ = false;              ///< no shaded point needs its bsdf_ and frame_
 
   // Scratch of the stages.
   AlignedVector<std::uint32_t> scratch_key_, scratch_index_;

@@ -164,6 +164,19 @@ void AppendDirectLightEach(const ShadingPoints& points, std::uint32_t first_poin
   }
 }
 
+void AddVisible(const ShadowLanes& lanes, const std::uint8_t* HWY_RESTRICT occluded, std::size_t count, Vec3Batch& radiance) {
+  const D d;
+  const DU du;
+  const auto bytes = hn::Rebind<std::uint8_t, D>();
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const M visible = hn::RebindMask(d, hn::Eq(hn::PromoteTo(du, hn::LoadU(bytes, occluded + i)), hn::Zero(du)));
+    const V3 sum = load3(d, radiance, i), more = load3(d, lanes.contribution, i);
+    hn::StoreU(hn::Add(sum.x, hn::IfThenElseZero(visible, more.x)), d, radiance.x.data() + i);
+    hn::StoreU(hn::Add(sum.y, hn::IfThenElseZero(visible, more.y)), d, radiance.y.data() + i);
+    hn::StoreU(hn::Add(sum.z, hn::IfThenElseZero(visible, more.z)), d, radiance.z.data() + i);
+  }
+}
+
 void SampleLambert(const ShadingPoints& points, const float* HWY_RESTRICT u, const float* HWY_RESTRICT v, std::size_t count, Vec3Batch& wi,
                    float* HWY_RESTRICT pdf) {
   const D d;
@@ -209,6 +222,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 HWY_EXPORT(AppendDirectLight);
 HWY_EXPORT(AppendDirectLightEach);
+HWY_EXPORT(AddVisible);
 HWY_EXPORT(SampleLambert);
 
 void ShadowLanes::resize(std::size_t capacity) {
@@ -227,6 +241,9 @@ void append_direct_light(const ShadingPoints& points, std::uint32_t point, const
 void append_direct_light_each(const ShadingPoints& points, std::uint32_t first_point, const LightSampleBatch& light, std::size_t count,
                               const std::uint8_t* active, const DirectLightOptions& options, ShadowLanes& out) {
   HWY_DYNAMIC_DISPATCH(AppendDirectLightEach)(points, first_point, light, count, active, options, out);
+}
+void add_visible(const ShadowLanes& lanes, const std::uint8_t* occluded, std::size_t count, Vec3Batch& radiance) {
+  HWY_DYNAMIC_DISPATCH(AddVisible)(lanes, occluded, count, radiance);
 }
 void sample_lambert(const ShadingPoints& points, const float* u, const float* v, std::size_t count, Vec3Batch& wi, float* pdf) {
   HWY_DYNAMIC_DISPATCH(SampleLambert)(points, u, v, count, wi, pdf);

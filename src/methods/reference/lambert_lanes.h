@@ -44,6 +44,9 @@ void append_direct_light(const ShadingPoints& points, std::uint32_t point, const
 void append_direct_light_each(const ShadingPoints& points, std::uint32_t first_point, const LightSampleBatch& light, std::size_t count,
                               const std::uint8_t* active, const DirectLightOptions& options, ShadowLanes& out);
 
+/// radiance[i] += contribution[i] where occluded[i] is 0, for lanes [0, count): lanes in place, one sample a point.
+void add_visible(const ShadowLanes& lanes, const std::uint8_t* occluded, std::size_t count, Vec3Batch& radiance);
+
 /// Cosine-weighted directions about the shading normals: unit wi and pdf for lanes [0, count); pdf 0 where the direction crosses the
 /// geometric surface. `u`, `v` in [0,1).
 void sample_lambert(const ShadingPoints& points, const float* u, const float* v, std::size_t count, Vec3Batch& wi, float* pdf);

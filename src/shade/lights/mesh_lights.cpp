@@ -10,6 +10,7 @@
 
 #include "base/core/error.h"
 #include "base/parallel/parallel.h"
+#include "shade/lights/parallelogram.h"
 #include "trace/triangle_uv.h"
 
 namespace sightline {
@@ -76,7 +77,7 @@ void MeshLights::add_instance(const Scene& scene, const TextureSet& textures, co
   if (instance.mesh.index >= scene.meshes.size()) throw input_error("the instance's mesh does not exist").at(instance.name);
   const Mesh& mesh = scene.meshes[instance.mesh.index];
 
-  // One emitter a slot of the palette that emits.
+  // Two emitters a slot of the palette that emits: for its triangles, and after it for its parallelograms.
   const bool overridden = instance.material_override.valid();
   std::vector<MaterialId> palette = overridden ? std::vector<MaterialId>{instance.material_override} : mesh.materials;
   std::vector<std::uint32_t> emitter_of(palette.size(), kNoLight);
@@ -100,6 +101,8 @@ void MeshLights::add_instance(const Scene& scene, const TextureSet& textures, co
     }
     emitter.source = static_cast<std::uint32_t>(instance_index);
     emitter_of[slot] = static_cast<std::uint32_t>(emitters.size());
+    emitters.push_back(emitter);
+    emitter.flags &= ~static_cast<std::uint32_t>(FlatEmitter::kTriangle);
     emitters.push_back(emitter);
   }
   if (!any) return;
@@ -128,8 +131,40 @@ void MeshLights::add_instance(const Scene& scene, const TextureSet& textures, co
     source = {};
     return;
   }
+  // A parallelogram is one light: its samples are stratified as a whole, and there is one choice less to make.
   const bool dense = source.index_of.empty();
-  const std::size_t count = dense ? mesh.triangles.size() : primitives.size();
+  const std::size_t triangle_count = dense ? mesh.triangles.size() : primitives.size();
+  const auto corners_of = [&](std::size_t t) -> TriangleCorners {
+    const UVec3 corner = mesh.triangles[t];
+    return {mesh.positions[corner.x], mesh.positions[corner.y], mesh.positions[corner.z]};
+  };
+  const auto is_valid = [&](std::size_t t) {
+    const UVec3 corner = mesh.triangles[t];
+    return std::max({corner.x, corner.y, corner.z}) < mesh.positions.size() && slot_of(t) < palette.size();
+  };
+  const auto shape_of_pair = [&](std::size_t t, std::size_t partner) -> std::optional<TriangleCorners> {
+    const bool alike = is_valid(t) && is_valid(partner) && slot_of(t) == slot_of(partner);
+    if (!alike || emitters[emitter_of[slot_of(t)]].is(FlatEmitter::kTextured)) return std::nullopt;
+    return parallelogram_of(corners_of(t), corners_of(partner));
+  };
+  struct Part {
+    std::uint32_t primitive, partner;
+  };
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < triangle_count; ++i) {
+    const auto primitive_at = [&](std::size_t k) { return dense ? static_cast<std::uint32_t>(k) : primitives[k]; };
+    const std::uint32_t t = primitive_at(i);
+    const bool pair = i + 1 < triangle_count && shape_of_pair(t, primitive_at(i + 1)).has_value();
+    parts.push_back({t, pair ? primitive_at(++i) : kNoLight});
+  }
+  const std::size_t count = parts.size();
+  if (count < triangle_count) {
+    source.index_of.assign(mesh.triangles.size(), kNoLight);
+    for (std::size_t i = 0; i < count; ++i) {
+      source.index_of[parts[i].primitive] = static_cast<std::uint32_t>(i);
+      if (parts[i].partner != kNoLight) source.index_of[parts[i].partner] = static_cast<std::uint32_t>(i);
+    }
+  }
   if (count + lights.size() >= kNoLight) throw resource_error("more than 2^32 emissive triangles").at(mesh.name);
 
   const Mat4& m = instance.world_from_object;
@@ -139,18 +174,19 @@ void MeshLights::add_instance(const Scene& scene, const TextureSet& textures, co
   powers.resize(base + count);
   parallel_for(context, count, 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t t = dense ? i : primitives[i];
-      const UVec3 corner = mesh.triangles[t];
+      const auto [t, partner] = parts[i];
+      if (!is_valid(t)) continue;
       const std::size_t slot = slot_of(t);
-      if (std::max({corner.x, corner.y, corner.z}) >= mesh.positions.size() || slot >= palette.size()) continue;
+      const bool pair = partner != kNoLight;
       FlatLight& light = lights[base + i];
-      light = placed_triangle(m, mirrored, {mesh.positions[corner.x], mesh.positions[corner.y], mesh.positions[corner.z]});
-      light.emitter = emitter_of[slot];
-      light.primitive = static_cast<std::uint32_t>(t);
+      light = placed_triangle(m, mirrored, pair ? *shape_of_pair(t, partner) : corners_of(t));
+      if (pair) light.area *= 2, light.point_error *= 3;  // the fourth corner lies at most three times as far out as the others
+      light.emitter = emitter_of[slot] + (pair ? 1 : 0);
+      light.primitive = t;
       const FlatEmitter& emitter = emitters[light.emitter];
       float mean = luminance(emitter.radiance);
       if (emitter.is(FlatEmitter::kTextured)) {
-        mean *= mean_luminance_over(textures, emitter.texture, corner_uvs(mesh.uvs, corner), texture_mean[slot]);
+        mean *= mean_luminance_over(textures, emitter.texture, corner_uvs(mesh.uvs, mesh.triangles[t]), texture_mean[slot]);
       }
       powers[base + i] = mean * light.area * kPi * (emitter.is(FlatEmitter::kTwoSided) ? 2.f : 1.f);
     }

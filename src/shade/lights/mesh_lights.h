@@ -1,4 +1,4 @@
-// The emissive triangles of a scene as flat lights.
+// The emissive triangles of a scene as flat lights; pairs that make a parallelogram are one.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ namespace sightline {
 /// Emissive triangles of all instances, with what is needed to find a hit triangle's light and a light's texture coordinates.
 class MeshLights {
  public:
-  /// Appends lights and their powers (luminance, W) for every triangle with an emissive material; an instance whose materials all emit
-  /// gets one light a triangle in order (degenerate ones have power 0), so that the index of a hit is a sum.
+  /// Appends lights and their powers (luminance, W) for every triangle with an emissive material, or two that follow each other and make
+  /// a parallelogram without texture. An instance whose materials all emit and that has no such pairs gets one light a triangle in order
+  /// (degenerate ones have power 0), so that the index of a hit is a sum.
   MeshLights() = default;
   MeshLights(const Scene& scene, const TextureSet& textures, const Context& context, AlignedVector<FlatLight>& lights,
              std::vector<FlatEmitter>& emitters, std::vector<float>& powers);

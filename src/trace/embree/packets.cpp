@@ -13,7 +13,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // By BatchKind: primary, shadow, shadow_diffuse, bounce; the fastest of single, 8- and 16-wide calls with either flag in `sightline bench
 // trace`. Coherent packets of shadow rays pay where triangles are large beside the packet (Sponza: 1.5 times the rays), and cost up to half
 // the speed where they are fine (hairball), so those have a table for each class of geometry. Both give the same answers.
-constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, true}, {16, false}, {16, false}, {16, false}}};
+constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, true}, {16, false}, {16, false}, {8, false}}};
 constexpr std::array<CallStyle, 4> kOccludedStyles{{{16, false}, {16, false}, {16, false}, {16, false}}};
 constexpr std::array<CallStyle, 4> kOccludedStylesCoarse{{{16, true}, {16, true}, {16, false}, {16, false}}};
 

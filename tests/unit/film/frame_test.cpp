@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <random>
 
+#include "base/core/aligned.h"
 #include "base/core/error.h"
 #include "film/frame_file.h"
 
@@ -25,6 +29,57 @@ void fill(Frame& frame, SampleRange range) {
 AovSet some_layers() {
   AovSet aovs = parse_aovs("albedo,variance");
   return aovs;
+}
+
+// 16 pixels with `count` samples whose values are drawn by `value`, once in one go and once sample by sample.
+template <class Value>
+std::pair<Frame, Frame> by_block_and_by_sample(std::uint32_t count, AovSet aovs, Value value) {
+  std::pair<Frame, Frame> frames{Frame(16, 1, aovs), Frame(16, 1, aovs)};
+  std::vector<std::uint32_t> pixel(16);
+  std::vector<std::uint8_t> inside(16, 1);
+  std::iota(pixel.begin(), pixel.end(), 0u);
+  inside[5] = 0;
+  Vec3Batch values;
+  values.resize(std::size_t{16} * count);
+  for (std::uint32_t i = 0; i < 16 * count; ++i) {
+    const Color c(value(), value(), value());
+    values.x[i] = c.x, values.y[i] = c.y, values.z[i] = c.z;
+    if (i % 16 == 5) continue;
+    frames.second.add_color(i % 16, 3 + i / 16, c);
+    frames.second.add(Aov::albedo, i % 16, c);
+  }
+  const PixelBlock block{pixel.data(), inside.data(), 3, count, {values.x.data(), values.y.data(), values.z.data()}};
+  frames.first.add_color(block);
+  frames.first.add(Aov::albedo, block);
+  return frames;
+}
+
+TEST(Frame, BlocksOfSamplesGiveTheSameBitsAsSingleOnes) {
+  AovSet aovs;
+  aovs.add(Aov::albedo);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> ordinary(0.f, 4.f), exponent(-80.f, 80.f);
+  const auto compare = [&](std::uint32_t count, AovSet layers, auto value) {
+    const auto [block, single] = by_block_and_by_sample(count, layers, value);
+    for (const Aov aov : {Aov::color, Aov::albedo, Aov::variance}) {
+      const auto a = block.sums(aov), b = single.sums(aov);
+      EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+    }
+    EXPECT_EQ(block.nonfinite_samples(), single.nonfinite_samples());
+    EXPECT_EQ(block.saturated_samples(), single.saturated_samples());
+    EXPECT_EQ(block.first_bad_sample().has_value(), single.first_bad_sample().has_value());
+  };
+  for (const std::uint32_t count : {1u, 2u, 64u, 128u, 129u}) {
+    compare(count, aovs, [&] { return ordinary(random); });
+    compare(count, aovs, [&] { return random() % 2 ? 0.f : -ordinary(random); });
+    compare(count, aovs, [&] { return std::exp2(exponent(random)); });  // most need more than 64 bits
+  }
+  // The most that 64 bits must hold: 128 samples just below the limit.
+  compare(128, aovs, [&] { return std::nextafter(0x1p15f, 0.f); });
+  compare(4, aovs, [&] { return random() % 7 ? 1.f : std::numeric_limits<float>::quiet_NaN(); });
+  AovSet with_variance = aovs;
+  with_variance.add(Aov::variance);
+  compare(8, with_variance, [&] { return ordinary(random); });
 }
 
 TEST(Frame, TilesCoverEveryPixelOnce) {

@@ -27,7 +27,7 @@ Picture render_with(const Method& method, const std::string& setting = "") {
   const auto world = World::build(std::move(scene), {}, context);
   const View view(camera, kSize, PixelFilter());
   const VisibilityInfo& exact = find_visibility("exact");
-  const std::unique_ptr<Visibility> visibility = exact.make(world, exact.settings);
+  const std::unique_ptr<Visibility> visibility = exact.make(world, exact.settings, Context());
   RenderJob job;
   job.world = world;
   job.view = &view;

@@ -30,7 +30,7 @@ TEST(MeshLights, ReflectionKeepsTheFrontSideOfTheObject) {
 }
 
 TEST(MeshLights, LightOfFindsTrianglesOfPalettesOverridesAndInstances) {
-  Scene scene = test::scene_with_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}, {0, 1, 3}}, Material{});
+  Scene scene = test::scene_with_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.1f, 1, 0}}, {{0, 1, 2}, {1, 3, 2}, {0, 1, 3}}, Material{});
   scene.materials.push_back(emissive(Color(2)));
   scene.materials.push_back(emissive(Color(5)));
   scene.materials.push_back(emissive(Color(NAN, 1, 1)));
@@ -71,6 +71,38 @@ TEST(MeshLights, LightOfFindsTrianglesOfPalettesOverridesAndInstances) {
   EXPECT_EQ(radiance(kSphereBit | 2, 0), 0);
   EXPECT_NE(table.light_of(0, 0), table.light_of(1, 0));
   EXPECT_EQ(table.emission(table.light_of(0, 0), {}, false).x, 0);
+}
+
+TEST(MeshLights, TwoTrianglesThatMakeAParallelogramAreOneLight) {
+  const std::vector<Vec3> square{{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}};
+  const LightTable table = table_of(test::scene_with_mesh(square, {{0, 1, 2}, {0, 2, 3}}, emissive(Color(3))));
+  ASSERT_EQ(table.size(), 1u);
+  EXPECT_EQ(table.light_of(0, 0), 0u);
+  EXPECT_EQ(table.light_of(0, 1), 0u);
+  EXPECT_EQ(table.light_of(0, 2), kNoLight);
+  EXPECT_FLOAT_EQ(table.power(0), 3 * 4 * kPi);
+  // Every point of the square is drawn with the density that a hit would be given, and on the side that the winding says.
+  for (int i = 0; i < 64; ++i) {
+    const Vec2 u{static_cast<float>(i % 8) / 8, static_cast<float>(i / 8) / 8};
+    const LightSample s = table.sample({0.3f, 0, 0.1f}, {0, 1, 0}, 0.5f, u);
+    EXPECT_TRUE(std::fabs(s.point.x) <= 1 && std::fabs(s.point.z) <= 1 && s.point.y == 2);
+    EXPECT_GT(s.pdf, 0);
+    EXPECT_NEAR(s.pdf, table.pdf({0.3f, 0, 0.1f}, {0, 1, 0}, 0, s.point, s.normal, s.wi), 1e-4f * s.pdf);
+  }
+}
+
+TEST(MeshLights, OnlyUntexturedParallelogramsOfOneMaterialAreMerged) {
+  const std::vector<Vec3> square{{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}};
+  const auto size_with = [&](std::vector<Vec3> corners, const std::vector<UVec3>& triangles) {
+    return table_of(test::scene_with_mesh(corners, triangles, emissive(Color(3)))).size();
+  };
+  std::vector<Vec3> bent = square, trapezium = square;
+  bent[3].y = 2.01f, trapezium[3].x = -1.01f;
+  EXPECT_EQ(size_with(bent, {{0, 1, 2}, {0, 2, 3}}), 2u);
+  EXPECT_EQ(size_with(trapezium, {{0, 1, 2}, {0, 2, 3}}), 2u);
+  EXPECT_EQ(size_with(square, {{0, 1, 2}, {0, 3, 2}}), 2u) << "one faces up, one down";
+  EXPECT_EQ(size_with(square, {{2, 0, 1}, {3, 0, 2}}), 1u) << "whatever corner a triangle begins with";
+  EXPECT_EQ(size_with(square, {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}), 2u);
 }
 
 TEST(MeshLights, InterfacesDoNotEmit) {
