@@ -1,6 +1,7 @@
 #include <string>
 
 #include "base/core/error.h"
+#include "visibility/cached/cached.h"
 #include "visibility/exact/exact.h"
 #include "visibility/nee_plus_plus/nee_plus_plus.h"
 #include "visibility/shadow_map/shadow_map.h"
@@ -11,6 +12,7 @@ namespace sightline {
 const std::vector<VisibilityInfo>& visibilities() {
   static const std::vector<VisibilityInfo> table = {
       exact_visibility(),
+      cached_visibility(),
       nee_plus_plus_visibility(),
       shadow_map_visibility(),
   };
