@@ -43,14 +43,17 @@ class SignalScope {
   SignalScope& operator=(const SignalScope&) = delete;
 };
 
+int output_failed(const std::error_code& code) {
+  if (code != std::errc::broken_pipe) fmt::print(stderr, "sightline: standard output: cannot be written: {}\n", code.message());
+  return sightline::app::kResource;
+}
+
 /// What was printed must have arrived, or the exit code would lie. A reader that closed its end early (head) is told by the code alone.
 int after_flushing(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
   const int error_number = errno;
   if (code != sightline::app::kDone) return code;
-  if (error_number != EPIPE)
-    fmt::print(stderr, "sightline: standard output: cannot be written: {}\n", std::generic_category().message(error_number));
-  return sightline::app::kResource;
+  return output_failed(std::error_code(error_number, std::generic_category()));
 }
 
 int exit_code(const sightline::Error& error) {
@@ -113,8 +116,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "sightline: out of memory; use --memory-limit, fewer layers or a smaller scene\n");
     return sightline::app::kResource;
   } catch (const std::system_error& error) {
-    // Of the calls that report this way, those fail that want a thread or print.
-    if (error.code() != std::errc::broken_pipe) fmt::print(stderr, "sightline: {}\n", error.what());
+    // Of the calls that report this way, those fail that print or want a thread.
+    if (std::ferror(stdout)) return output_failed(error.code());
+    fmt::print(stderr, "sightline: {}\n", error.what());
     return sightline::app::kResource;
   } catch (const std::exception& error) {
     fmt::print(stderr, "sightline: internal error: {}; please report this\n", error.what());

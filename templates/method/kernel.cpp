@@ -14,9 +14,9 @@ Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i
 
 }  // namespace
 
-ExampleKernel::ExampleKernel(const World& world, const View& view, const Visibility& visibility, const ExampleSettings& settings,
+ExampleKernel::ExampleKernel(const World& world, const View& view, Visibility& visibility, const ExampleSettings& settings,
                              std::uint64_t seed)
-    : world_(world), view_(view), visibility_(visibility), settings_(settings), seed_(seed) {}
+    : world_(world), view_(view), settings_(settings), seed_(seed), visibility_(visibility.worker()) {}
 
 void ExampleKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
   const auto count = static_cast<std::size_t>(tile.pixel_count());
@@ -31,6 +31,7 @@ void ExampleKernel::render_tile(const Tile& tile, SampleRange samples, Frame& fr
       key_[i] = pixel_key(seed_, pixel_[i]);
     }
   }
+  visibility_->begin(tile.index);
   for (std::uint32_t sample = samples.begin; sample < samples.end; ++sample) {
     trace_camera_rays(sample, statistics);
     gather_queries(sample);
@@ -58,7 +59,11 @@ void ExampleKernel::trace_camera_rays(std::uint32_t sample, PassStatistics& stat
 void ExampleKernel::gather_queries(std::uint32_t sample) {
   random_numbers(sample, dimension::pair_of(0, dimension::kLightPick), u0_, u1_);
   random_numbers(sample, dimension::pair_of(0, dimension::kLightPoint), u2_, u3_);
-  queries_.clear(), contributions_.clear(), receivers_.clear();
+  // At most one query a pixel: eye end i is pixel i's surface, light end k the k-th light sample.
+  queries_.eye.resize(rays_.size);
+  queries_.resize_lights(rays_.size);
+  queries_.resize_queries(rays_.size);
+  contributions_.clear();
   const LightTable& lights = world_.lights();
   for (std::size_t i = 0; i < rays_.size; ++i) {
     const Vec3 direction = load(rays_.direction, i), wo = -direction;
@@ -81,22 +86,22 @@ void ExampleKernel::gather_queries(std::uint32_t sample) {
     const Color value = bsdf.evaluate(shading.to_local(wo), shading.to_local(light.wi)).f_cos * light.radiance / light.pdf;
     if (is_black(value)) continue;
 
-    Query query{.x = position, .x_normal = normal, .x_error = surfaces_.error[i], .id = pixel_[i]};
+    // Cell areas of 0: we do not know how large a patch our samples stand for, so that a cache answers with a ray.
+    const auto k = static_cast<std::uint32_t>(contributions_.size());
     const bool finite = std::isfinite(light.distance);
-    query.semantic = finite ? QuerySemantic::surface : QuerySemantic::direction;
-    query.y = finite ? light.point : light.wi;
-    query.y_normal = light.normal;
-    query.y_error = light.point_error;
-    queries_.push_back(query);
+    queries_.eye.set(i, position, glm::dot(normal, wo) < 0 ? -normal : normal, surfaces_.error[i], 0, pixel_[i]);
+    queries_.light.set(k, finite ? light.point : light.wi, light.normal, light.point_error, 0, sample);
+    queries_.semantic[k] = static_cast<std::uint8_t>(finite ? QuerySemantic::surface : QuerySemantic::direction);
+    queries_.eye_of[k] = static_cast<std::uint32_t>(i), queries_.light_of[k] = k;
     contributions_.push_back(value);
-    receivers_.push_back(static_cast<std::uint32_t>(i));
   }
+  queries_.resize_queries(contributions_.size());
 }
 
 void ExampleKernel::add_results(std::uint32_t sample, Frame& frame, PassStatistics& statistics) {
-  weights_.resize(queries_.size());
-  visibility_.visible(queries_, weights_, statistics.rays, statistics.visibility);
-  for (std::size_t k = 0; k < queries_.size(); ++k) radiance_[receivers_[k]] += weights_[k] * contributions_[k];
+  weights_.resize(padded(queries_.size));
+  visibility_->visible(queries_, weights_, statistics.rays, statistics.visibility);
+  for (std::size_t k = 0; k < queries_.size; ++k) radiance_[queries_.eye_of[k]] += weights_[k] * contributions_[k];
   for (std::size_t i = 0; i < rays_.size; ++i) frame.add_color(pixel_[i], sample, settings_.brightness * radiance_[i]);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/core/aligned.h"
@@ -13,7 +14,7 @@ namespace sightline {
 /// Buffers of one thread. Everything runs over batches of camera rays that stay in the second-level cache.
 class ExampleKernel {
  public:
-  ExampleKernel(const World& world, const View& view, const Visibility& visibility, const ExampleSettings& settings, std::uint64_t seed);
+  ExampleKernel(const World& world, const View& view, Visibility& visibility, const ExampleSettings& settings, std::uint64_t seed);
 
   /// Adds `samples` of every pixel of `tile` to the frame.
   void render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics);
@@ -26,7 +27,6 @@ class ExampleKernel {
 
   const World& world_;
   const View& view_;
-  const Visibility& visibility_;
   const ExampleSettings& settings_;
   std::uint64_t seed_;
 
@@ -39,10 +39,10 @@ class ExampleKernel {
   std::vector<Color> radiance_;
 
   // One element a light sample that would arrive if nothing were in its way.
-  std::vector<Query> queries_;
-  std::vector<float> weights_;
+  std::unique_ptr<VisibilityWorker> visibility_;
+  QueryBatch queries_;
+  AlignedVector<float> weights_;
   std::vector<Color> contributions_;
-  std::vector<std::uint32_t> receivers_;
 };
 
 }  // namespace sightline

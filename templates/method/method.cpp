@@ -32,6 +32,7 @@ std::unique_ptr<const Bake> ExampleMethod::prepare(const RenderJob& job, const C
 void ExampleMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                 const Context& context) const {
   const auto& settings = job.settings.as<ExampleSettings>();
+  job.visibility->begin_pass({range.begin}, context);
   for_each_tile(context, frame, range, statistics, [&](const Tile& tile, SampleRange samples, PassStatistics& local) {
     ExampleKernel kernel(*job.world, *job.view, *job.visibility, settings, context.seed);
     kernel.render_tile(tile, samples, frame, local);
