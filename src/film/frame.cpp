@@ -142,14 +142,20 @@ double Frame::mean_samples_done() const {
   return sum / (static_cast<double>(width_) * height_);
 }
 
-Vec3 Frame::value(Aov aov, std::uint32_t pixel) const {
+Vec3 Frame::value(Aov aov, std::uint32_t pixel) const { return value(aov, pixel, has_light_image() ? mean_samples_done() : 0); }
+
+Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) const {
   const std::vector<ExactSum>& sums = sums_[static_cast<std::size_t>(aov)];
+  const std::vector<ExactSum>& arrived = light_image_[static_cast<std::size_t>(aov)];
   const std::uint32_t samples = samples_done_[tile_of_pixel(pixel)];
   Vec3 result(0);
   if (sums.empty() || samples == 0) return result;
   const std::size_t channels = aov_info(aov).channels.size();
-  for (std::size_t c = 0; c < channels; ++c)
-    result[static_cast<int>(c)] = static_cast<float>(sums[pixel * channels + c].to_double() / samples);
+  for (std::size_t c = 0; c < channels; ++c) {
+    double mean = sums[pixel * channels + c].to_double() / samples;
+    if (!arrived.empty()) mean += arrived[pixel * channels + c].to_double() / light_image_samples;
+    result[static_cast<int>(c)] = static_cast<float>(mean);
+  }
   return result;
 }
 
@@ -157,12 +163,14 @@ Color Frame::color(std::uint32_t pixel) const { return value(Aov::color, pixel);
 
 ColorImage Frame::color_image() const {
   ColorImage image(width_, height_);
-  for (std::uint32_t pixel = 0; pixel < image.pixels.size(); ++pixel) image.pixels[pixel] = color(pixel);
+  const double mean = mean_samples_done();
+  for (std::uint32_t pixel = 0; pixel < image.pixels.size(); ++pixel) image.pixels[pixel] = value(Aov::color, pixel, mean);
   return image;
 }
 
 LayeredImage Frame::to_layered_image() const {
   LayeredImage image;
+  const double mean = mean_samples_done();
   image.width = width_, image.height = height_;
   const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   for (const AovInfo& info : aov_table()) {
@@ -173,7 +181,7 @@ LayeredImage Frame::to_layered_image() const {
       image.channels.push_back({std::move(name), info.half, std::vector<float>(pixel_count)});
     }
     for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) {
-      const Vec3 v = value(info.id, pixel);
+      const Vec3 v = value(info.id, pixel, mean);
       for (std::size_t c = 0; c < info.channels.size(); ++c) image.channels[first + c].values[pixel] = v[static_cast<int>(c)];
     }
   }
@@ -187,21 +195,28 @@ LayeredImage Frame::to_layered_image() const {
 double Frame::mean_luminance() const {
   double sum = 0;
   const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) sum += luminance(color(pixel));
+  const double mean = mean_samples_done();
+  for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) sum += luminance(value(Aov::color, pixel, mean));
   return pixel_count ? sum / static_cast<double>(pixel_count) : 0;
 }
 
 std::optional<double> Frame::estimated_error() const {
   if (!aovs_.has(Aov::variance)) return std::nullopt;
   const double floor_luminance = std::max(1e-12, 0.01 * mean_luminance());
+  const double mean_samples = mean_samples_done();
   double sum = 0;
   std::size_t counted = 0;
   const std::size_t pixel_count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) {
     const double n = samples_done_[tile_of_pixel(pixel)];
     if (n < 2) return std::nullopt;
-    const double mean = luminance(color(pixel));
-    const double variance = std::max(0.0, sums_[static_cast<std::size_t>(Aov::variance)][pixel].to_double() / n - mean * mean) / (n - 1);
+    // The mean of the samples alone: what arrived in the light image has no mean square of its own to be subtracted.
+    const ExactSum* sums = &sums_[0][std::size_t{3} * pixel];
+    const double own = 0.2126 * sums[0].to_double() + 0.7152 * sums[1].to_double() + 0.0722 * sums[2].to_double();
+    const double mean_own = has_light_image() ? own / n : static_cast<double>(luminance(value(Aov::color, pixel, 0)));
+    const double squares = sums_[static_cast<std::size_t>(Aov::variance)][pixel].to_double() / n;
+    const double variance = std::max(0.0, squares - mean_own * mean_own) / (n - 1);
+    const double mean = luminance(value(Aov::color, pixel, mean_samples));
     const double scale = std::max(mean, floor_luminance);
     sum += variance / (scale * scale);
     ++counted;
@@ -218,13 +233,16 @@ std::optional<BadSample> Frame::first_bad_sample() const {
 std::uint64_t Frame::memory_bytes() const {
   std::uint64_t bytes = samples_done_.size() * sizeof(std::uint32_t);
   for (const auto& sums : sums_) bytes += sums.size() * sizeof(ExactSum);
+  for (const auto& sums : light_image_) bytes += sums.size() * sizeof(ExactSum);
   return bytes;
 }
 
 void Frame::merge(const Frame& other) {
   if (other.width_ != width_ || other.height_ != height_ || other.aovs_.bits() != aovs_.bits())
     throw input_error("frames differ in size or layers and cannot be merged");
+  if (other.has_light_image()) enable_light_image();
   for (std::size_t layer = 0; layer < kAovCount; ++layer) {
+    for (std::size_t i = 0; i < other.light_image_[layer].size(); ++i) light_image_[layer][i].value += other.light_image_[layer][i].value;
     for (std::size_t i = 0; i < sums_[layer].size(); ++i) sums_[layer][i].value += other.sums_[layer][i].value;
   }
   for (std::size_t tile = 0; tile < samples_done_.size(); ++tile) samples_done_[tile] += other.samples_done_[tile];

@@ -113,6 +113,7 @@ class Frame {
  private:
   bool add_exactly(Aov aov, const PixelBlock& block);
   std::uint32_t tile_of_pixel(std::uint32_t pixel) const;
+  Vec3 value(Aov aov, std::uint32_t pixel, double light_image_samples) const;
   void count_bad_sample(std::uint32_t pixel, std::uint32_t sample);
 
   int width_ = 0, height_ = 0, tiles_x_ = 0;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr char kMagic[8] = {'S', 'L', 'F', 'R', 'A', 'M', 'E', '1'};
 
-// File: magic, header bytes (u64), payload bytes (u64), xxh64 of header and payload, JSON header, zstd payload (tile counts, then sums).
+// File: magic, header bytes (u64), payload bytes (u64), xxh64 of header and payload, JSON header, zstd payload (tile counts, then sums,
+// then those of the light image).
 struct Prefix {
   char magic[8];
   std::uint64_t header_bytes, payload_bytes, checksum;
@@ -37,7 +38,7 @@ std::string text(const nlohmann::json& header, const char* key) {
 
 std::size_t raw_size(const Frame& frame) {
   std::size_t size = frame.tile_count() * sizeof(std::uint32_t);
-  for (const AovInfo& info : aov_table()) size += frame.sums(info.id).size_bytes();
+  for (const AovInfo& info : aov_table()) size += frame.sums(info.id).size_bytes() + frame.light_image_sums(info.id).size_bytes();
   return size;
 }
 
@@ -48,6 +49,7 @@ std::vector<std::byte> encode_frame(const Frame& frame, const FrameIdentity& ide
                                  {"height", frame.height()},
                                  {"layers", frame.aovs().bits()},
                                  {"first_sample", frame.first_sample()},
+                                 {"light_image", frame.has_light_image()},
                                  {"identity", identity.text},
                                  {"note", note},
                                  {"nonfinite", frame.nonfinite_samples()}};
@@ -61,6 +63,7 @@ std::vector<std::byte> encode_frame(const Frame& frame, const FrameIdentity& ide
   };
   put(frame.samples_per_tile().data(), frame.samples_per_tile().size_bytes());
   for (const AovInfo& info : aov_table()) put(frame.sums(info.id).data(), frame.sums(info.id).size_bytes());
+  for (const AovInfo& info : aov_table()) put(frame.light_image_sums(info.id).data(), frame.light_image_sums(info.id).size_bytes());
 
   std::vector<std::byte> bytes(sizeof(Prefix) + header_text.size() + ZSTD_compressBound(raw.size()));
   std::byte* body = bytes.data() + sizeof(Prefix);
@@ -98,6 +101,11 @@ StoredFrame decode_frame(std::span<const std::byte> bytes, const std::string& na
   std::size_t channels = 0;
   const AovSet aovs = AovSet::from_bits(static_cast<std::uint32_t>(*layers));
   for (const AovInfo& info : aov_table()) channels += aovs.has(info.id) ? info.channels.size() : 0;
+  const auto light_image_key = header.find("light_image");
+  const bool light_image = light_image_key != header.end() && light_image_key->is_boolean() && light_image_key->get<bool>();
+  if (light_image) {
+    for (const Aov aov : {Aov::color, Aov::direct, Aov::indirect}) channels += aovs.has(aov) ? aov_info(aov).channels.size() : 0;
+  }
   const std::uint64_t pixel_bytes = *width * *height * channels * sizeof(ExactSum);
   const std::span<const std::byte> payload = body.subspan(prefix.header_bytes);
   const unsigned long long content = ZSTD_getFrameContentSize(payload.data(), payload.size());
@@ -109,6 +117,7 @@ StoredFrame decode_frame(std::span<const std::byte> bytes, const std::string& na
   StoredFrame stored{Frame(static_cast<int>(*width), static_cast<int>(*height), aovs, static_cast<std::uint32_t>(*first_sample)),
                      {text(header, "identity")},
                      text(header, "note")};
+  if (light_image) stored.frame.enable_light_image();
   std::vector<std::byte> raw(raw_size(stored.frame));
   if (raw.size() != content) throw fail("frame payload does not fit its header");
   const std::size_t unpacked = ZSTD_decompress(raw.data(), raw.size(), payload.data(), payload.size());
@@ -119,11 +128,12 @@ StoredFrame decode_frame(std::span<const std::byte> bytes, const std::string& na
     std::memcpy(&count, raw.data() + at, sizeof count);
     stored.frame.set_samples_done(tile, count);
   }
-  for (const AovInfo& info : aov_table()) {
-    const std::span<ExactSum> sums = stored.frame.sums(info.id);
+  const auto take = [&](std::span<ExactSum> sums) {
     if (!sums.empty()) std::memcpy(sums.data(), raw.data() + at, sums.size_bytes());
     at += sums.size_bytes();
-  }
+  };
+  for (const AovInfo& info : aov_table()) take(stored.frame.sums(info.id));
+  for (const AovInfo& info : aov_table()) take(stored.frame.light_image_sums(info.id));
   return stored;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/core/error.h"
+#include "methods/bidirectional/method.h"
 #include "methods/method.h"
 #include "methods/reference/method.h"
 
@@ -11,7 +12,8 @@ namespace sightline {
 
 std::span<const Method* const> methods() {
   static const ReferenceMethod reference;
-  static const std::array<const Method*, 1> table = {&reference};
+  static const BidirectionalMethod bidirectional;
+  static const std::array<const Method*, 2> table = {&reference, &bidirectional};
   return table;
 }
 

@@ -43,6 +43,28 @@ struct LightSampleBatch {
   void set(std::size_t first, std::span<const LightSample> samples);
 };
 
+/// Densities of a ray that leaves a light. For lights at infinity the first is that of the direction and the second that of the place
+/// across the beam, since there the direction comes first.
+struct EmissionPdf {
+  float start = 0;  ///< of the point, by area, selection included; selection alone for delta lights; by solid angle at infinity
+  float leave = 0;  ///< of the direction, by solid angle; by area across the beam at infinity
+};
+
+/// A ray that leaves a light.
+struct EmissionSample {
+  Vec3 point{0};              ///< on the light; at infinity where the ray enters the scene's bounding sphere
+  Vec3 normal{0};             ///< of the emitting surface; 0 for points and lights at infinity
+  Vec3 direction{0, 0, 1};    ///< unit, the way light travels
+  float point_error = 0;      ///< absolute bound on the rounding error of `point`
+  Color radiance{0};          ///< radiance; intensity of points and spots, irradiance of directional lights
+  EmissionPdf pdf;            ///< both 0 = no sample
+  bool is_delta = false;      ///< a point or a single direction: no ray finds it
+  bool is_infinite = false;   ///< directional light or environment
+  bool is_mesh = false;       ///< on geometry that rays can hit
+  bool is_two_sided = false;  ///< emits on both sides of `normal`
+  std::uint32_t light = kNoLight;
+};
+
 /// How a light is chosen for a shading point: an interface, so that smarter choices can replace choice by power.
 class LightPicker {
  public:
@@ -82,6 +104,11 @@ class LightTable {
   /// Radiance of the environment from unit `direction` (0 without one) and the density of sampling it.
   Color environment(const Vec3& direction) const;
   float environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const;
+  /// A ray that leaves a light chosen by its power; `u_pick` is not read if there is only one light.
+  EmissionSample sample_emission(float u_pick, const Vec2& u_point, const Vec2& u_direction) const;
+  /// Densities with which sample_emission() would have produced the ray from `point` of entry `light` along unit `direction`.
+  EmissionPdf emission_pdf(std::uint32_t light, const Vec3& point, const Vec3& direction) const;
+  std::uint32_t environment_entry() const;  ///< kNoLight without one
   /// Total power by entry, W, as the picker sees it.
   float power(std::uint32_t light) const;
 

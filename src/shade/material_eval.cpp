@@ -134,10 +134,14 @@ Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId 
     height.texture = found->bump;
     result = frame_from_normal_tangent(bumped_normal(textures, height, point, result, dp_du, dp_dv), frame.tangent);
   }
+  return face_viewer(result, frame.tangent, geometric_normal, wo);
+}
+
+Frame3 face_viewer(const Frame3& frame, const Vec3& tangent, const Vec3& geometric_normal, const Vec3& wo) {
   const float outside = glm::dot(wo, geometric_normal) < 0 ? -1.f : 1.f;
-  Vec3 n = turned_towards(result.normal, geometric_normal);
+  Vec3 n = turned_towards(frame.normal, geometric_normal);
   if (glm::dot(n, wo) * outside <= 0 && !is_black(wo)) n = turned_towards(n, outside * wo);
-  return n == result.normal ? result : frame_from_normal_tangent(n, frame.tangent);
+  return n == frame.normal ? frame : frame_from_normal_tangent(n, tangent);
 }
 
 }  // namespace sightline

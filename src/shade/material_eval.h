@@ -23,4 +23,7 @@ bool is_interface(const Scene& scene, MaterialId material);
 Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, const Frame3& frame,
                      const Vec3& dp_du, const Vec3& dp_dv, const Vec3& geometric_normal, const Vec3& wo = Vec3(0));
 
+/// The last step of it alone: `frame` with the maps applied, turned as little as that takes; a turned frame is built on `tangent`.
+Frame3 face_viewer(const Frame3& frame, const Vec3& tangent, const Vec3& geometric_normal, const Vec3& wo);
+
 }  // namespace sightline

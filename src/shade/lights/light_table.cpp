@@ -7,39 +7,11 @@
 #include <limits>
 
 #include "shade/lights/light_kernels.h"
-#include "shade/lights/light_lists.h"
-#include "shade/lights/power_picker.h"
+#include "shade/lights/light_table_impl.h"
 #include "trace/ray_batch.h"
 #include "trace/sphere.h"
 
 namespace sightline {
-
-struct LightTable::Impl {
-  Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context)
-      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(texture_set) {
-    for (const FlatEmitter& emitter : lists.emitters) has_textures = has_textures || emitter.is(FlatEmitter::kTextured);
-  }
-
-  /// A single light needs no random number.
-  LightPicker::Pick pick(const Vec3& position, const Vec3& normal, float u) const {
-    if (lists.size() == 1) return {0, picker.probability(position, normal, 0), 0};
-    return picker.pick(position, normal, u);
-  }
-  LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
-  /// Vector code for lanes whose lights are of one kind that has some; returns how many lanes it did.
-  std::size_t sample_lanes(const LightLanes& lanes, std::uint32_t least, std::uint32_t greatest, std::span<const float> u0,
-                           std::span<const float> u1, std::size_t first, LightSampleBatch& samples) const;
-  Color texture_of(const FlatLight& light, const Vec2& u) const {
-    const FlatEmitter& emitter = lists.emitters[light.emitter];
-    const Vec2 uv = lists.meshes.uv(emitter, light.primitive, flat_parameters(emitter.flags, u));
-    return glm::max(Color(textures.sample(emitter.texture, {.uv = uv})), Color(0));
-  }
-
-  LightLists lists;
-  PowerPicker picker;
-  TextureSet textures;
-  bool has_textures = false;
-};
 
 LightSample LightTable::Impl::sample_light(std::uint32_t index, float selection, const Vec3& position, const Vec2& u) const {
   if (index < lists.punctual_begin) {

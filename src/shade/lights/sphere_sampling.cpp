@@ -29,18 +29,18 @@ Cone cone_of(const SphereEmitter& sphere, const Vec3& position) {
   return {true, to_center / distance, distance, sin_squared, sin_squared / (1 + std::sqrt(std::max(0.f, 1 - sin_squared)))};
 }
 
-float point_error(const SphereEmitter& sphere) {
+}  // namespace
+
+float sphere_point_error(const SphereEmitter& sphere) {
   const float largest = std::max({std::fabs(sphere.center.x), std::fabs(sphere.center.y), std::fabs(sphere.center.z)});
   return 4 * std::numeric_limits<float>::epsilon() * (largest + sphere.radius);
 }
-
-}  // namespace
 
 LightSample sample_sphere(const SphereEmitter& sphere, std::uint32_t index, float selection, const Vec3& position, const Vec2& u) {
   LightSample s;
   s.light = index;
   s.is_mesh = sphere.is_mesh;
-  s.point_error = point_error(sphere);
+  s.point_error = sphere_point_error(sphere);
   s.radiance = sphere.radiance;
 
   const Cone cone = cone_of(sphere, position);

@@ -21,7 +21,9 @@ struct SphereEmitter {
 
 /// Sample without texture. From outside uniform in the solid angle of the cone that the sphere fills; from inside uniform by area.
 LightSample sample_sphere(const SphereEmitter& sphere, std::uint32_t index, float selection, const Vec3& position, const Vec2& u);
-/// Density of the same for the point `hit` of the sphere.
+/// Absolute bound on the rounding error of a computed point of the sphere, per component.
+float sphere_point_error(const SphereEmitter& sphere);
+/// Density of sample_sphere for the point `hit` of the sphere.
 float pdf_sphere(const SphereEmitter& sphere, float selection, const Vec3& position, const Vec3& hit);
 
 }  // namespace sightline
