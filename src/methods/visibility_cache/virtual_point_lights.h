@@ -1,0 +1,47 @@
+// Virtual point lights [Keller1997], resampled by what they send to the eye [Segovia2006].
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/core/aligned.h"
+#include "base/core/context.h"
+#include "base/math/frame.h"
+#include "film/view.h"
+#include "shade/bsdf.h"
+#include "trace/ray_batch.h"
+#include "world/world.h"
+
+namespace sightline {
+
+struct VirtualPointLightOptions {
+  int count = 256;               ///< M: lights kept (fewer after duplicates are merged)
+  int candidates = 8;            ///< M_c / M
+  int eye_samples = 64;          ///< that judge the candidates
+  float backward_share = 0.5f;   ///< of the candidates: made from the eye (eye vertex, one bounce, connected to a light)
+  float clamp_distance = 0.02f;  ///< the geometry term is clamped at 1 / (clamp_distance B_R)²; 0 = not clamped
+  int max_bounces = 8;           ///< of light paths before the eye's surface: 1 = light, VPL, eye
+  std::uint64_t seed = 0;
+  std::uint32_t pass = 0;  ///< absolute index of the pass: each has lights of its own
+};
+
+/// Points of surfaces that reflect light; structure of arrays, padded to kLanes (padding has flux 0).
+struct VirtualPointLights {
+  Vec3Batch position, normal;           ///< normal: unit geometric, on the side that the light arrived from
+  Vec3Batch flux;                       ///< Φ: power carried, with all divisions by counts and probabilities done
+  Vec3Batch radiosity;                  ///< where lambert: Φ reflectance / π, so that the radiance sent in every direction of that side
+  AlignedVector<float> error;           ///< of position
+  AlignedVector<float> cell_area;       ///< 1 / (M P(p_l)) by k nearest neighbours: surface that one light stands for, world units²
+  AlignedVector<std::uint8_t> lambert;  ///< 1: bsdf is a plain Lambert
+  std::vector<Vec3> wi;                 ///< unit, towards where the light came from
+  std::vector<Frame3> frame;
+  std::vector<Bsdf> bsdf;
+  std::size_t size = 0;
+  float max_geometry_term = 0;  ///< clamp for cos / r² of connections, world units⁻²; infinity without
+};
+
+/// Lights of one pass. The result depends on options and scene alone, not on the threads of `context`.
+VirtualPointLights make_virtual_point_lights(const World& world, const View& view, const VirtualPointLightOptions& options,
+                                             const Context& context, RayCounts& rays);
+
+}  // namespace sightline
