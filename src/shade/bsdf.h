@@ -29,6 +29,10 @@ class Bsdf {
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const {
     return std::visit([&](const auto& m) { return m.sample(wo, u_lobe, u, mode); }, model_);
   }
+  /// All delta parts at once, for those who follow every branch.
+  DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const {
+    return std::visit([&](const auto& m) { return m.delta_lobes(wo, mode); }, model_);
+  }
   Color albedo() const {
     return std::visit([](const auto& m) { return m.albedo(); }, model_);
   }

@@ -1,6 +1,8 @@
 // The contract that every BSDF keeps.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include "base/math/vec.h"
@@ -26,9 +28,25 @@ struct BsdfSample {
   float eta = 1;  ///< index of refraction ratio passed (far side over near side), 1 for reflection
 };
 
+/// The delta parts seen from one direction: none, one, or a reflection and a transmission, in that order. Here `weight` is all that the
+/// part carries, f |cos| with Fresnel, not divided by `pdf`, the probability with which sample() chooses it.
+class DeltaLobes {
+ public:
+  void add(const BsdfSample& lobe) { lobes_[count_++] = lobe; }
+  std::size_t size() const { return count_; }
+  const BsdfSample& operator[](std::size_t i) const { return lobes_[i]; }
+  const BsdfSample* begin() const { return lobes_.data(); }
+  const BsdfSample* end() const { return lobes_.data() + count_; }
+
+ private:
+  std::array<BsdfSample, 2> lobes_;
+  std::size_t count_ = 0;
+};
+
 // A BSDF class has, in the local shading frame (z = shading normal, wo and wi point away from the surface, wo.z may be negative):
 //   BsdfEval evaluate(Vec3 wo, Vec3 wi, TransportMode) const;
 //   std::optional<BsdfSample> sample(Vec3 wo, float u_lobe, Vec2 u, TransportMode) const;   // u in [0,1)
+//   DeltaLobes delta_lobes(Vec3 wo, TransportMode) const;                                     // none unless some limit is smooth
 //   Color albedo() const;                                                                    // for the albedo AOV, in [0,1]
 //   bool is_delta() const;                                                                   // no non-delta part: skip light sampling
 

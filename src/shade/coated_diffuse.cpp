@@ -73,6 +73,20 @@ std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, co
   return s;
 }
 
+DeltaLobes CoatedDiffuse::delta_lobes(const Vec3& wo, TransportMode) const {
+  DeltaLobes lobes;
+  if (!ggx_.is_smooth() || wo.z == 0) return lobes;
+  const float reflected_o = coat_reflectance(std::fabs(wo.z));
+  if (!(reflected_o > 0)) return lobes;
+  BsdfSample s;
+  s.wi = Vec3(-wo.x, -wo.y, wo.z);
+  s.weight = Color(reflected_o);
+  s.pdf = specular_probability(reflected_o);
+  s.is_delta = true;
+  lobes.add(s);
+  return lobes;
+}
+
 Color CoatedDiffuse::albedo() const {
   // Under uniform light: the mean reflectance of the coat and what comes back through it.
   return glm::clamp(Color(1 - mean_transmittance_) + base_ * (mean_transmittance_ * mean_transmittance_), 0.f, 1.f);

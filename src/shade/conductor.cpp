@@ -14,17 +14,26 @@ BsdfEval Conductor::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) cons
           half_distribution * ggx_.masking_over_cosine(wo)};
 }
 
+BsdfSample Conductor::mirror(const Vec3& wo) const {
+  BsdfSample s;
+  s.wi = Vec3(-wo.x, -wo.y, wo.z);
+  s.weight = tint_ * fresnel_conductor(std::fabs(wo.z), eta_, k_);
+  s.pdf = 1;
+  s.is_delta = true;
+  return s;
+}
+
+DeltaLobes Conductor::delta_lobes(const Vec3& wo, TransportMode) const {
+  DeltaLobes lobes;
+  if (ggx_.is_smooth() && wo.z != 0) lobes.add(mirror(wo));
+  return lobes;
+}
+
 std::optional<BsdfSample> Conductor::sample(const Vec3& wo, float, const Vec2& u, TransportMode) const {
   if (wo.z == 0) return std::nullopt;
+  if (ggx_.is_smooth()) return mirror(wo);
   const float side = wo.z < 0 ? -1.f : 1.f;
   BsdfSample s;
-  if (ggx_.is_smooth()) {
-    s.wi = Vec3(-wo.x, -wo.y, wo.z);
-    s.weight = tint_ * fresnel_conductor(std::fabs(wo.z), eta_, k_);
-    s.pdf = 1;
-    s.is_delta = true;
-    return s;
-  }
   const Vec3 upper{wo.x, wo.y, side * wo.z};
   const Vec3 m = ggx_.sample_visible(upper, u);
   s.wi = reflect_about(upper, m);

@@ -17,10 +17,13 @@ class Conductor {
 
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
   Color albedo() const;
   bool is_delta() const { return ggx_.is_smooth(); }
 
  private:
+  BsdfSample mirror(const Vec3& wo) const;
+
   Color eta_{0.2f}, k_{3.9f}, tint_{1};
   Ggx ggx_;
 };

@@ -83,7 +83,9 @@ std::optional<BsdfSample> Dielectric::sample(const Vec3& wo, float u_lobe, const
   return s;
 }
 
-std::optional<BsdfSample> Dielectric::sample_smooth(const Vec3& wo, float u_lobe, TransportMode mode) const {
+DeltaLobes Dielectric::delta_lobes(const Vec3& wo, TransportMode mode) const {
+  DeltaLobes lobes;
+  if (!delta_ || wo.z == 0) return lobes;
   const float eta = wo.z > 0 || thin_ ? eta_ : 1 / eta_;
   float cos_t;
   float reflectance = fresnel_dielectric(std::fabs(wo.z), eta, cos_t);
@@ -91,21 +93,32 @@ std::optional<BsdfSample> Dielectric::sample_smooth(const Vec3& wo, float u_lobe
   if (thin_) reflectance = 2 * reflectance / (1 + reflectance);
   BsdfSample s;
   s.is_delta = true;
-  s.weight = Color(1);
-  s.is_transmission = !(u_lobe < reflectance);
-  if (!s.is_transmission) {
+  if (reflectance > 0) {
     s.wi = Vec3(-wo.x, -wo.y, wo.z);
+    s.weight = Color(reflectance);
     s.pdf = reflectance;
-    return s;
+    lobes.add(s);
   }
-  s.pdf = 1 - reflectance;
-  if (thin_) {
+  if (reflectance < 1) {
+    s.is_transmission = true;
+    s.pdf = 1 - reflectance;
+    s.weight = Color(s.pdf);
     s.wi = -wo;
-    return s;
+    if (!thin_) {
+      s.wi = glm::normalize(Vec3(-wo.x / eta, -wo.y / eta, std::copysign(cos_t, -wo.z)));
+      s.eta = eta;
+      if (mode == TransportMode::radiance) s.weight *= 1 / (eta * eta);
+    }
+    lobes.add(s);
   }
-  s.wi = glm::normalize(Vec3(-wo.x / eta, -wo.y / eta, std::copysign(cos_t, -wo.z)));
-  s.eta = eta;
-  if (mode == TransportMode::radiance) s.weight = Color(1 / (eta * eta));
+  return lobes;
+}
+
+std::optional<BsdfSample> Dielectric::sample_smooth(const Vec3& wo, float u_lobe, TransportMode mode) const {
+  // One of the lobes, each as often as its share.
+  const DeltaLobes lobes = delta_lobes(wo, mode);
+  BsdfSample s = lobes[lobes.size() > 1 && !(u_lobe < lobes[0].pdf) ? 1 : 0];
+  s.weight = Color(mode == TransportMode::radiance ? 1 / (s.eta * s.eta) : 1.f);
   return s;
 }
 

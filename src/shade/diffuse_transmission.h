@@ -15,6 +15,7 @@ class DiffuseTransmission {
 
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return reflectance_ + transmittance_; }
   bool is_delta() const { return false; }
 

@@ -27,6 +27,7 @@ struct Lambert {
     s.weight = reflectance;
     return s;
   }
+  DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return glm::clamp(reflectance, 0.f, 1.f); }
   bool is_delta() const { return false; }
 };

@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "base/core/aligned.h"
 #include "base/core/context.h"
 #include "base/math/bounds.h"
+#include "base/sample/alias_table.h"
 #include "scene/scene.h"
 #include "texture/texture_set.h"
 
@@ -78,6 +80,14 @@ class LightPicker {
   virtual float probability(const Vec3& position, const Vec3& normal, std::uint32_t light) const = 0;
 };
 
+/// Some of a table's lights, chosen by their power: for methods that treat kinds of light in different ways.
+struct LightSubset {
+  enum Kinds : std::uint32_t { kArea = 1, kPunctual = 2, kEnvironment = 4 };
+  std::vector<std::uint32_t> entries;
+  AliasTable choice;  ///< over all entries of the table; those left out have weight 0
+  bool empty() const { return entries.empty(); }
+};
+
 /// Immutable once built. Thread-safe.
 class LightTable {
  public:
@@ -94,6 +104,13 @@ class LightTable {
   /// On every SIMD target bit for bit what the single call gives.
   void sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
               std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
+  /// Lights of the given kinds (LightSubset::Kinds, or-ed) that have power.
+  LightSubset subset(std::uint32_t kinds) const;
+  /// The batch call of sample() for lights of a subset alone: densities contain the choice within it.
+  void sample(const LightSubset& subset, const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick,
+              std::span<const float> u0, std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
+  /// A point on one light. `selection` is multiplied into the density.
+  LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
   /// Entry of an emissive triangle (HitBatch::instance, primitive), or of a sphere with kSphereBit; kNoLight if it does not emit.
   std::uint32_t light_of(std::uint32_t instance, std::uint32_t primitive) const;
   /// Density with which sample() would have produced the point that a ray from `position` along unit `direction` hit on entry `light`.
@@ -103,6 +120,8 @@ class LightTable {
   Color emission(std::uint32_t light, const TexturePoint& point, bool front_side) const;
   /// Radiance of the environment from unit `direction` (0 without one) and the density of sampling it.
   Color environment(const Vec3& direction) const;
+  /// Density of sampling it once it has been chosen.
+  float environment_density(const Vec3& direction) const;
   float environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const;
   /// A ray that leaves a light chosen by its power; `u_pick` is not read if there is only one light.
   EmissionSample sample_emission(float u_pick, const Vec2& u_point, const Vec2& u_direction) const;
@@ -114,6 +133,9 @@ class LightTable {
 
  private:
   struct Impl;
+  void sample_by(const AliasTable& choice, std::optional<std::uint32_t> only, const Vec3Batch& position, const Vec3Batch& normal,
+                 std::span<const float> u_pick, std::span<const float> u0, std::span<const float> u1, std::size_t count,
+                 LightSampleBatch& samples) const;
   std::unique_ptr<const Impl> impl_;
 };
 

@@ -82,6 +82,18 @@ std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe
   return s;
 }
 
+DeltaLobes MetallicRoughness::delta_lobes(const Vec3& wo, TransportMode) const {
+  DeltaLobes lobes;
+  if (!ggx_.is_smooth() || wo.z == 0) return lobes;
+  BsdfSample s;
+  s.wi = Vec3(-wo.x, -wo.y, wo.z);
+  s.weight = specular_albedo(std::fabs(wo.z));
+  s.pdf = is_black(diffuse_) ? 1.f : specular_probability(s.weight);
+  s.is_delta = true;
+  if (!is_black(s.weight)) lobes.add(s);
+  return lobes;
+}
+
 Color MetallicRoughness::albedo() const {
   // Under uniform light, with E the mean albedo of the GGX part: E + (1 - E)² diffuse.
   const Color mean_specular = ggx_schlick_mean_albedo(f0_, ggx_);

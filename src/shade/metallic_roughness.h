@@ -20,6 +20,7 @@ class MetallicRoughness {
 
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
   Color albedo() const;
   /// A mirror-like metal.
   bool is_delta() const { return ggx_.is_smooth() && is_black(diffuse_); }

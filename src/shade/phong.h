@@ -16,6 +16,7 @@ class Phong {
 
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
+  DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return diffuse_ + specular_; }
   bool is_delta() const { return false; }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "visibility/query_ray_lanes.h"
+
 namespace sightline {
 namespace {
 
@@ -24,23 +26,21 @@ Ray query_ray(const QueryBatch& queries, std::size_t i) {
   return {origin, 0, target - origin, 1};
 }
 
-void make_query_rays(const QueryBatch& queries, std::span<const std::uint32_t> which, RayBatch& rays) {
-  rays.resize(which.size());
-  for (std::size_t k = 0; k < which.size(); ++k) rays.set(k, query_ray(queries, which[k]));
-}
-
 void QueryTracer::trace_all(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) {
   occluded_.resize(std::max(occluded_.size(), kBlock));
   std::uint64_t asked = 0;
   for (std::size_t begin = 0; begin < queries.size; begin += kBlock) {
     const std::size_t count = std::min(kBlock, queries.size - begin);
     batch_.resize(count);
-    for (std::size_t k = 0; k < count; ++k) batch_.set(k, query_ray(queries, begin + k));
+    query_rays(queries, nullptr, begin, count, batch_);
     world_->tracer().occluded(batch_, occluded_, queries.kind, rays);
+    const std::uint32_t* light = queries.light_of.data() + begin;
+    const std::uint8_t* occluded = occluded_.data();
+    float* weight = weights.data() + begin;
     for (std::size_t k = 0; k < count; ++k) {
-      const bool gap = queries.light_of[begin + k] == kNoQuery;
+      const bool gap = light[k] == kNoQuery;
       asked += !gap;
-      weights[begin + k] = gap || occluded_[k] ? 0.f : 1.f;
+      weight[k] = static_cast<float>(!gap & !occluded[k]);
     }
   }
   counts.queries += asked;
@@ -49,7 +49,8 @@ void QueryTracer::trace_all(const QueryBatch& queries, std::span<float> weights,
 
 std::span<const std::uint8_t> QueryTracer::trace(const QueryBatch& queries, std::span<const std::uint32_t> which, RayCounts& rays,
                                                  VisibilityCounts& counts) {
-  make_query_rays(queries, which, batch_);
+  batch_.resize(which.size());
+  query_rays(queries, which.data(), 0, which.size(), batch_);
   occluded_.resize(std::max(occluded_.size(), padded(which.size())));
   world_->tracer().occluded(batch_, occluded_, BatchKind::shadow_diffuse, rays);
   counts.traced += which.size();

@@ -12,9 +12,6 @@ namespace sightline {
 /// The ray that decides query i, moved off both surfaces by their error bounds. t_far < t_near for a gap.
 Ray query_ray(const QueryBatch& queries, std::size_t i);
 
-/// Rays of the queries that `which` lists, side by side.
-void make_query_rays(const QueryBatch& queries, std::span<const std::uint32_t> which, RayBatch& rays);
-
 /// One ray for each query in packets of `queries.kind`, gaps included; weights 0 or 1.
 class QueryTracer {
  public:

@@ -78,6 +78,40 @@ LightSample LightTable::sample(const Vec3& position, const Vec3& normal, float u
 
 void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick, std::span<const float> u0,
                         std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
+  const std::optional<std::uint32_t> only = size() == 1 ? std::optional<std::uint32_t>(0) : std::nullopt;
+  sample_by(impl_->picker.table(), only, position, normal, u_pick, u0, u1, count, samples);
+}
+
+void LightTable::sample(const LightSubset& subset, const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick,
+                        std::span<const float> u0, std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
+  const std::optional<std::uint32_t> only = subset.entries.size() == 1 ? std::optional(subset.entries.front()) : std::nullopt;
+  sample_by(subset.choice, only, position, normal, u_pick, u0, u1, count, samples);
+}
+
+LightSubset LightTable::subset(std::uint32_t kinds) const {
+  const LightLists& lists = impl_->lists;
+  LightSubset subset;
+  std::vector<float> powers(lists.powers.size(), 0.f);
+  for (std::uint32_t i = 0; i < lists.size(); ++i) {
+    const bool punctual = i >= lists.punctual_begin && i < lists.sphere_begin;
+    const std::uint32_t kind = i == lists.environment_index ? LightSubset::kEnvironment
+                               : punctual                   ? LightSubset::kPunctual
+                                                            : LightSubset::kArea;
+    if (!(kinds & kind) || !(lists.powers[i] > 0)) continue;
+    subset.entries.push_back(i);
+    powers[i] = lists.powers[i];
+  }
+  subset.choice = AliasTable(powers);
+  return subset;
+}
+
+LightSample LightTable::sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const {
+  return impl_->sample_light(light, selection, position, u);
+}
+
+void LightTable::sample_by(const AliasTable& choice, std::optional<std::uint32_t> only, const Vec3Batch& position, const Vec3Batch&,
+                           std::span<const float> u_pick, std::span<const float> u0, std::span<const float> u1, std::size_t count,
+                           LightSampleBatch& samples) const {
   if (samples.pdf.size() < padded(count)) samples.resize(count);
   const LightLists& lists = impl_->lists;
   // One sample after the other where there is no vector code: `draw(i)` for lanes [begin, end).
@@ -93,7 +127,9 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
   const auto place = [&](std::size_t i) { return Vec3(position.x[i], position.y[i], position.z[i]); };
   const auto scalar = [&](std::size_t begin, std::size_t end) {
     one_by_one(begin, end, [&](std::size_t i) {
-      return sample(place(i), {normal.x[i], normal.y[i], normal.z[i]}, lists.size() > 1 ? u_pick[i] : 0.f, {u0[i], u1[i]});
+      if (!choice.can_sample()) return LightSample();
+      const std::uint32_t light = only ? *only : choice.sample(u_pick[i]).index;
+      return impl_->sample_light(light, choice.probability(light), place(i), {u0[i], u1[i]});
     });
   };
   const auto lanes_from = [&](std::size_t begin, std::size_t n) {
@@ -106,12 +142,13 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
     lanes.count = n;
     return lanes;
   };
-  if (!impl_->picker.table().can_sample()) return scalar(0, count);
+  if (!choice.can_sample()) return scalar(0, count);
 
-  if (lists.size() == 1) {
+  if (only) {
     LightLanes lanes = lanes_from(0, count);
-    lanes.single_selection = impl_->picker.table().probability(0);
-    return scalar(impl_->sample_lanes(lanes, 0, 0, u0, u1, 0, samples), count);
+    lanes.single = *only;
+    lanes.single_selection = choice.probability(*only);
+    return scalar(impl_->sample_lanes(lanes, *only, *only, u0, u1, 0, samples), count);
   }
   // Lights for a chunk of lanes, then its runs: all of it where one kind is all there is, else whole padded groups that chose one kind.
   constexpr std::size_t kChunk = 256;
@@ -121,7 +158,7 @@ void LightTable::sample(const Vec3Batch& position, const Vec3Batch& normal, std:
   std::size_t begin = 0;
   while (begin < count) {
     const std::size_t picked =
-        pick_lights(impl_->picker.table(), u_pick.data() + begin, std::min(kChunk, count - begin), light.data(), probability.data());
+        pick_lights(choice, u_pick.data() + begin, std::min(kChunk, count - begin), light.data(), probability.data());
     if (picked == 0) return scalar(begin, count);
     for (std::size_t at = 0; at < picked; at += group) {
       const std::size_t n = std::min(group, picked - at);
@@ -187,6 +224,10 @@ Color LightTable::emission(std::uint32_t light, const TexturePoint& point, bool 
 
 Color LightTable::environment(const Vec3& direction) const {
   return impl_->lists.environment ? impl_->lists.environment->radiance(direction) : Color(0);
+}
+
+float LightTable::environment_density(const Vec3& direction) const {
+  return impl_->lists.environment ? impl_->lists.environment->pdf(direction) : 0.f;
 }
 
 float LightTable::environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const {

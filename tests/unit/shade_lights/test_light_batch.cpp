@@ -79,6 +79,22 @@ void check_lanes(const LightTable& table) {
       same(batch.radiance, s.radiance, "radiance");
       if (testing::Test::HasFailure()) return;
     }
+    for (std::uint32_t kinds = 1; kinds < 8; ++kinds) {
+      const LightSubset subset = table.subset(kinds);
+      table.sample(subset, position, normal, u_pick, u0, u1, count, batch);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (subset.empty()) {
+          EXPECT_EQ(batch.pdf[i], 0);
+          continue;
+        }
+        const std::uint32_t light = subset.entries.size() == 1 ? subset.entries[0] : subset.choice.sample(u_pick[i]).index;
+        const LightSample s =
+            table.sample_light(light, subset.choice.probability(light), {position.x[i], position.y[i], position.z[i]}, {u0[i], u1[i]});
+        expect_same_bits(batch.pdf[i], s.pdf, "pdf in a subset", i);
+        EXPECT_EQ(batch.light[i], light);
+        if (testing::Test::HasFailure()) return;
+      }
+    }
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include "base/core/error.h"
 #include "unit/trace/trace_scenes.h"
+#include "visibility/query_ray_lanes.h"
+#include "visibility/query_rays.h"
 #include "visibility/visibility.h"
 
 namespace sightline::test {
@@ -179,6 +181,33 @@ TEST(ExactVisibility, AWaveAnswersAsAWorkerDoes) {
   std::vector<float> weights(padded(queries.size()));
   wave->resolve(1, weights);
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), weights.begin()));
+}
+
+TEST(QueryRays, LanesGiveTheBitsOfTheSingleCall) {
+  std::mt19937 random(6);
+  std::vector<Query> queries(333);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    Query& q = queries[i];
+    q.x = random_point(random, 5), q.y = random_point(random, 5);
+    q.x_normal = random_direction(random), q.x_error = 1e-4f, q.y_error = 1e-5f;
+    q.semantic = std::array{QuerySemantic::surface, QuerySemantic::point, QuerySemantic::direction, QuerySemantic::solid_angle}[i % 4];
+    if (i % 4 == 0) q.y_normal = random_direction(random);
+  }
+  QueryBatch batch = batch_of(queries);
+  batch.light_of[7] = kNoQuery;
+  const std::vector<std::uint32_t> some{5, 3, 200, 7, 7, 332, 0};
+  const auto expect_ray = [&](const RayBatch& rays, std::size_t lane, std::size_t query) {
+    const Ray a = rays.get(lane), b = query_ray(batch, query);
+    EXPECT_TRUE(a.origin == b.origin && a.direction == b.direction && a.t_near == b.t_near && a.t_far == b.t_far) << query;
+  };
+  RayBatch rays;
+  rays.resize(queries.size());
+  query_rays(batch, nullptr, 0, queries.size(), rays);
+  for (std::size_t i = 0; i < queries.size(); ++i) expect_ray(rays, i, i);
+  query_rays(batch, nullptr, 100, 50, rays);
+  for (std::size_t i = 0; i < 50; ++i) expect_ray(rays, i, 100 + i);
+  query_rays(batch, some.data(), 0, some.size(), rays);
+  for (std::size_t i = 0; i < some.size(); ++i) expect_ray(rays, i, some[i]);
 }
 
 TEST(ExactVisibility, GapsAreNeitherAskedNorCounted) {
