@@ -74,10 +74,17 @@ PathKernel::PathKernel(const World& world, const View& view, const KernelOptions
   light_.resize(kBatch + kLanes);  // a run that begins inside a group is read in whole vectors
   // In place, each run of light samples takes whole groups of lanes: at least 8 samples, so at most twice as many lanes.
   shadow_.resize(kBatch), occluded_.resize(kBatch);
+  if (options.visibility) {
+    queries_ = std::make_unique<ShadowQueries>(world, view, *options.visibility, static_cast<float>(options.samples_a_pass),
+                                               options.light_samples);
+    // Queries are made of lanes in place, whatever the number of samples in a run.
+    shadow_.resize(std::max(kBatch, kLanes * kLightChunk)), point_id_.resize(kBatch);
+  }
 }
 
 void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
-  counts_ = {};
+  counts_ = {}, visibility_counts_ = {};
+  if (queries_) queries_->begin_tile(static_cast<std::uint32_t>(tile.y0 * view_.width() + tile.x0));
   const std::vector<IVec2> blocks = blocks_of(tile);
   // A batch holds all samples of some blocks, or a part of the samples of one; sums are exact, so the split does not show.
   const std::uint32_t samples_a_batch = std::min<std::uint32_t>(samples.count(), kBatch / kLanes);
@@ -101,8 +108,8 @@ void PathKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame
     }
   }
   statistics.rays += counts_;
-  statistics.visibility.queries += counts_.occlusion;
-  statistics.visibility.traced += counts_.occlusion;
+  if (!queries_) visibility_counts_.queries = visibility_counts_.traced = counts_.occlusion;
+  statistics.visibility += visibility_counts_;
 }
 
 // Every block of pixels has its samples side by side: the film takes them in one go.
@@ -279,7 +286,7 @@ void PathKernel::sample_lights_once(std::uint32_t bounce) {
   gather_keys(bounce);
   draw_light_samples(bounce, alive_, surfaces_.position, surfaces_.geometric_normal);
   shadow_.count = 0;
-  shadow_.in_place = coherent_shadows(bounce);
+  shadow_.in_place = queries_ || coherent_shadows(bounce);
   append_direct_light_each({&rays_, &surfaces_, &throughput_}, 0, light_, alive_, plain_.data(), {1, !options_.one_hit}, shadow_);
   for (std::size_t i = 0; i < alive_ && !all_plain_; ++i) {
     if (!shaded_[i] || plain_[i] || bsdf_[i].is_delta()) continue;
@@ -305,7 +312,7 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
     if (lanes == 0) return;
     draw_light_samples(bounce, lanes, light_position_, light_normal_);
     shadow_.count = 0;
-    shadow_.in_place = coherent_shadows(bounce);
+    shadow_.in_place = queries_ || coherent_shadows(bounce);
     for (const Run& run : runs_) {
       if (plain_[run.point]) {
         append_direct_light({&rays_, &surfaces_, &throughput_}, run.point, light_, run.first, run.count, direct, shadow_);
@@ -321,8 +328,8 @@ void PathKernel::sample_lights_often(std::uint32_t bounce) {
         }
       }
     }
-    runs_.clear();
     trace_shadows(bounce);
+    runs_.clear();
     lanes = 0;
   };
   for (std::size_t i = 0; i < alive_; ++i) {
@@ -381,8 +388,39 @@ bool PathKernel::set_general(std::size_t point, std::size_t lane, std::size_t at
   return true;
 }
 
+// What trace_shadows does, with weights from the visibility.
+void PathKernel::ask_visibility(std::uint32_t bounce) {
+  for (std::size_t i = 0; i < alive_; ++i) point_id_[i] = hash_combine(hash_combine(key_[slot_[i]], sample_[slot_[i]]), bounce);
+  // Runs of light samples begin at whole groups of lanes.
+  light_lane_.clear();
+  for (const Run& run : runs_) {
+    for (std::uint32_t k = 0; k < padded(run.count); ++k) light_lane_.push_back(run.first + std::min(k, run.count - 1));
+  }
+  const ShadowStage stage{{&rays_, &surfaces_, &throughput_},
+                          &hits_,
+                          point_id_.data(),
+                          &light_,
+                          runs_.empty() ? nullptr : light_lane_.data(),
+                          scratch_index_.data(),
+                          &shadow_,
+                          bounce == 0,
+                          coherent_shadows(bounce)};
+  const std::span<const float> weights = queries_->visible(stage, counts_, visibility_counts_);
+  Vec3Batch& radiance = bounce == 0 ? direct_ : indirect_;
+  for (std::size_t r = 0; r < shadow_.count;) {
+    const std::uint32_t point = shadow_.point[r];
+    Color sum(0);
+    for (; r < shadow_.count && shadow_.point[r] == point; ++r) sum += weights[r] * load(shadow_.contribution, r);
+    add(radiance, slot_[point], sum);
+  }
+}
+
 void PathKernel::trace_shadows(std::uint32_t bounce) {
   if (shadow_.count == 0) return;
+  if (queries_) {
+    ask_visibility(bounce);
+    return;
+  }
   shadow_.rays.size = shadow_.count;
   world_.tracer().occluded(shadow_.rays, std::span(occluded_), shadow_.in_place ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
   Vec3Batch& radiance = bounce == 0 ? direct_ : indirect_;

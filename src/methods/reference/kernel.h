@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/core/aligned.h"
@@ -9,6 +10,7 @@
 #include "film/view.h"
 #include "methods/method.h"
 #include "methods/reference/lambert_lanes.h"
+#include "methods/reference/queries.h"
 #include "shade/bsdf.h"
 #include "world/world.h"
 
@@ -20,6 +22,8 @@ struct KernelOptions {
   int roulette_start = 4;
   bool one_hit = false;  ///< light sampling only, no MIS
   std::uint64_t seed = 0;
+  Visibility* visibility = nullptr;  ///< answers shadow rays; null: exact rays
+  std::uint32_t samples_a_pass = 1;  ///< samples a pixel in one pass of `visibility`
 };
 
 /// State of one thread's batch of paths. A path is a slot (0 … path count); per-bounce arrays are compacted to the living ones, `slot`
@@ -51,6 +55,7 @@ class PathKernel {
   void set_inactive(std::size_t at, std::size_t point);
   bool set_general(std::size_t point, std::size_t lane, std::size_t at);
   void trace_shadows(std::uint32_t bounce);
+  void ask_visibility(std::uint32_t bounce);
   void scatter(std::uint32_t bounce);
   void write_aovs(Frame& frame);
   void add_radiance(std::uint32_t slot, bool direct, const Color& value);
@@ -98,6 +103,11 @@ class PathKernel {
   ShadowLanes shadow_;
   AlignedVector<std::uint8_t> occluded_;
   RayCounts counts_;
+
+  // With a visibility other than exact rays.
+  std::unique_ptr<ShadowQueries> queries_;
+  VisibilityCounts visibility_counts_;
+  std::vector<std::uint32_t> point_id_, light_lane_;
 };
 
 }  // namespace sightline

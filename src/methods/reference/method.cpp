@@ -1,5 +1,6 @@
 #include "methods/reference/method.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,7 +24,23 @@ KernelOptions kernel_options(const RenderJob& job, const Context& context) {
   const bool comparison = job.total_spp == 1 && job.light_samples > 0 && job.max_bounces == 0;
   options.one_hit = settings.mode == Mode::one_hit || (settings.mode == Mode::automatic && comparison);
   if (options.one_hit) options.max_bounces = 0;
+  if (job.visibility && !job.visibility->exact()) {
+    options.visibility = job.visibility;
+    options.samples_a_pass = std::min(static_cast<std::uint32_t>(settings.pass_spp), std::max(job.total_spp, 1u));
+  }
   return options;
+}
+
+/// Passes of the visibility, cut at absolute multiples of their size: where a pass of the session begins or ends does not matter to them
+/// as long as it does so at a multiple.
+std::vector<SampleRange> visibility_passes(SampleRange range, std::uint32_t size) {
+  std::vector<SampleRange> passes;
+  for (std::uint32_t begin = range.begin; begin < range.end;) {
+    const std::uint32_t end = std::min(range.end, (begin / size + 1) * size);
+    passes.push_back({begin, end});
+    begin = end;
+  }
+  return passes;
 }
 
 }  // namespace
@@ -53,11 +70,21 @@ void ReferenceMethod::render_pass(const RenderJob& job, SampleRange range, Frame
   const View& view = centred ? *centred : *job.view;
   // One kernel a thread: its arrays are too large to be made anew for every tile.
   std::vector<std::unique_ptr<PathKernel>> kernels(static_cast<std::size_t>(context.thread_count()));
-  for_each_tile(context, frame, range, statistics, [&](const Tile& tile, SampleRange samples, PassStatistics& local) {
-    std::unique_ptr<PathKernel>& kernel = kernels[static_cast<std::size_t>(worker_index()) % kernels.size()];
-    if (!kernel) kernel = std::make_unique<PathKernel>(*job.world, view, options);
-    kernel->render_tile(tile, samples, frame, local);
-  });
+  const auto render = [&](SampleRange part) {
+    for_each_tile(context, frame, part, statistics, [&](const Tile& tile, SampleRange samples, PassStatistics& local) {
+      std::unique_ptr<PathKernel>& kernel = kernels[static_cast<std::size_t>(worker_index()) % kernels.size()];
+      if (!kernel) kernel = std::make_unique<PathKernel>(*job.world, view, options);
+      kernel->render_tile(tile, samples, frame, local);
+    });
+  };
+  if (!options.visibility) {
+    render(range);
+    return;
+  }
+  for (const SampleRange& pass : visibility_passes(range, options.samples_a_pass)) {
+    job.visibility->begin_pass({pass.begin, 0}, context);
+    render(pass);
+  }
 }
 
 }  // namespace sightline

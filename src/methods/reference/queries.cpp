@@ -35,7 +35,7 @@ std::uint32_t ShadowQueries::add_eye(const ShadowStage& stage, std::uint32_t poi
   return end;
 }
 
-std::uint32_t ShadowQueries::add_light(const ShadowStage& stage, std::uint32_t point, std::uint32_t lane) {
+std::uint32_t ShadowQueries::add_light(const ShadowStage& stage, std::uint32_t lane) {
   const LightSampleBatch& light = *stage.light;
   const QuerySemantic semantic = semantic_of(light, lane);
   // All points ask about the same light without extent: one end serves them.
@@ -86,7 +86,7 @@ void ShadowQueries::make_queries(const ShadowStage& stage) {
     }
     const std::uint32_t point = shadow.point[lane];
     if (point != eye_point) eye = add_eye(stage, point), eye_point = point;
-    add(lane, eye, add_light(stage, point, stage.light_lane ? stage.light_lane[lane] : static_cast<std::uint32_t>(lane)));
+    add(lane, eye, add_light(stage, stage.light_lane ? stage.light_lane[lane] : static_cast<std::uint32_t>(lane)));
   }
   for (const std::uint32_t light : lights_used_) end_of_light_[light] = kNoQuery;
   lights_used_.clear();

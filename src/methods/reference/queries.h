@@ -39,7 +39,7 @@ class ShadowQueries {
 
  private:
   std::uint32_t add_eye(const ShadowStage& stage, std::uint32_t point);
-  std::uint32_t add_light(const ShadowStage& stage, std::uint32_t point, std::uint32_t lane);
+  std::uint32_t add_light(const ShadowStage& stage, std::uint32_t lane);
   void make_queries(const ShadowStage& stage);
 
   EyeFootprint footprint_;

@@ -11,6 +11,7 @@ struct ReferenceSettings {
   Mode mode = Mode::automatic;
   int light_samples = 1;
   int roulette_start = 4;
+  int pass_spp = 1;
 
   template <class Visitor>
   static void describe(Visitor&& visit) {
@@ -22,6 +23,12 @@ struct ReferenceSettings {
           {.help = "light samples a shading point (--light-samples sets it)", .minimum = 1, .maximum = 65536, .symbol = "N"});
     visit("roulette_start", &ReferenceSettings::roulette_start,
           {.help = "bounce from which Russian roulette may end a path", .minimum = 0, .maximum = 1e6});
+    visit("pass_spp", &ReferenceSettings::pass_spp,
+          {.help = "samples a pixel that a visibility other than exact rays takes as one pass: what it may share, or learns from the last; "
+                   "with 1 the picture does not depend on how samples are split",
+           .minimum = 1,
+           .maximum = 65536,
+           .unit = "samples"});
   }
 };
 
