@@ -36,8 +36,9 @@ inline constexpr std::uint32_t kDefaultMaterial = 0xfffffffeu;
 struct SurfaceDetail {
   Vec2 uv{0};
   Vec3 dp_du{1, 0, 0}, dp_dv{0, 1, 0};
-  Frame3 frame;          ///< shading frame before normal maps: normal and tangent
-  TexturePoint texture;  ///< uv with footprint
+  Vec3 dn_du{0}, dn_dv{0};  ///< change of frame.normal that goes with them: 0 on flat triangles
+  Frame3 frame;             ///< shading frame before normal maps: normal and tangent
+  TexturePoint texture;     ///< uv with footprint
 };
 
 /// Origin of a ray that leaves `position` towards the side of unit geometric normal `n` on which `direction` lies, moved by the error

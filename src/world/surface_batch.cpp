@@ -250,6 +250,21 @@ Vec3 interpolated_normal(const InstanceRecord& record, std::uint32_t primitive, 
   return n * (side / std::sqrt(length2));
 }
 
+NormalDerivatives normal_derivatives(const InstanceRecord& record, std::uint32_t primitive, float u, float v,
+                                     const Vec3& geometric_normal) {
+  const UVec3 t = record.triangles[primitive];
+  const Vec3 n0 = record.normals[t.x];
+  Vec3 n = (1 - u - v) * n0 + u * record.normals[t.y] + v * record.normals[t.z];
+  Vec3 along_u = record.normals[t.y] - n0, along_v = record.normals[t.z] - n0;
+  if (record.transforms_normals)
+    n = record.normal_matrix * n, along_u = record.normal_matrix * along_u, along_v = record.normal_matrix * along_v;
+  const float length2 = length_squared(n);
+  if (!(length2 > 1e-30f && length2 < 1e30f)) return {};
+  // Of n / |n|: what lies along n does not turn it.
+  const float scale = (glm::dot(n, geometric_normal) < 0 ? -1.f : 1.f) / std::sqrt(length2);
+  return {scale * (along_u - n * (glm::dot(n, along_u) / length2)), scale * (along_v - n * (glm::dot(n, along_v) / length2))};
+}
+
 WorldTriangle world_triangle(const InstanceRecord& record, std::uint32_t primitive) {
   const UVec3 t = record.triangles[primitive];
   WorldTriangle result{{record.positions[t.x], record.positions[t.y], record.positions[t.z]}, {}};

@@ -26,6 +26,24 @@ Derivatives derivatives_from_uv(const std::array<Vec3, 3>& p, const std::array<V
   return {frame.tangent, frame.bitangent};
 }
 
+// Barycentrics that a step in the triangle's plane passes, by least squares on the edges. In double: slivers lose half the digits.
+Vec2 barycentric_step(const Vec3& edge1, const Vec3& edge2, const Vec3& step) {
+  const Vec3d e1(edge1), e2(edge2), s(step);
+  const double g11 = glm::dot(e1, e1), g12 = glm::dot(e1, e2), g22 = glm::dot(e2, e2), a = glm::dot(s, e1), b = glm::dot(s, e2);
+  const double determinant = g11 * g22 - g12 * g12;
+  return Vec2(static_cast<float>((g22 * a - g12 * b) / determinant), static_cast<float>((g11 * b - g12 * a) / determinant));
+}
+
+// How the interpolated normal turns along dp_du and dp_dv.
+void set_normal_derivatives(const InstanceRecord& record, std::uint32_t primitive, float u, float v, const WorldTriangle& triangle,
+                            SurfaceDetail& detail) {
+  const NormalDerivatives d = normal_derivatives(record, primitive, u, v, triangle.geometric_normal);
+  const Vec3 edge1 = triangle.vertices[1] - triangle.vertices[0], edge2 = triangle.vertices[2] - triangle.vertices[0];
+  const Vec2 along_u = barycentric_step(edge1, edge2, detail.dp_du), along_v = barycentric_step(edge1, edge2, detail.dp_dv);
+  const Vec3 dn_du = along_u.x * d.du + along_u.y * d.dv, dn_dv = along_v.x * d.du + along_v.y * d.dv;
+  if (is_finite(dn_du) && is_finite(dn_dv)) detail.dn_du = dn_du, detail.dn_dv = dn_dv;
+}
+
 // Footprint of a cone of diameter `width` that meets the surface: a circle across the ray, stretched along the surface where it grazes.
 // Both axes lie in the tangent plane; each is expressed in uv by least squares on dp/du, dp/dv.
 TexturePoint footprint(const Vec2& uv, const Derivatives& d, const Vec3& normal, const Vec3& ray_direction, float width) {
@@ -63,6 +81,8 @@ SurfaceDetail sphere_detail(const Sphere& sphere, const Ray& ray, float t, float
   detail.dp_du = d.dp_du, detail.dp_dv = d.dp_dv;
   const Vec3 outward = rotation * local;
   const Vec3 normal = sphere.reverse_orientation ? -outward : outward;
+  const float curvature = (sphere.reverse_orientation ? -1.f : 1.f) / sphere.radius;
+  detail.dn_du = curvature * d.dp_du, detail.dn_dv = curvature * d.dp_dv;
   detail.frame = frame_from_normal_tangent(normal, d.dp_du);
   detail.texture = footprint(detail.uv, d, normal, ray.direction, cone_width);
   return detail;
@@ -101,6 +121,7 @@ SurfaceDetail reconstruct_detail(const Scene& scene, const SurfaceTables& tables
     }
   }
   detail.dp_du = d.dp_du, detail.dp_dv = d.dp_dv;
+  if (record.normals) set_normal_derivatives(record, primitive, u, v, triangle, detail);
   detail.frame = frame_from_normal_tangent(normal, tangent);
   return detail;
 }

@@ -73,6 +73,11 @@ struct WorldTriangle {
 };
 WorldTriangle world_triangle(const InstanceRecord& record, std::uint32_t primitive);
 Vec3 interpolated_normal(const InstanceRecord& record, std::uint32_t primitive, float u, float v, const Vec3& geometric_normal);
+/// Its change with the barycentrics u and v; 0 where it is not interpolated.
+struct NormalDerivatives {
+  Vec3 du{0}, dv{0};
+};
+NormalDerivatives normal_derivatives(const InstanceRecord& record, std::uint32_t primitive, float u, float v, const Vec3& geometric_normal);
 /// Unit normal of a triangle with these edges, with care for edges whose products leave the range of floats.
 Vec3 unit_normal(const Vec3& edge1, const Vec3& edge2);
 
