@@ -29,13 +29,19 @@ struct SlotV {
   VU index, digest;
 };
 
-HWY_INLINE void mix_pair(DU d, VU& a, VU& b) {
+HWY_INLINE void half_mix_pair(DU d, VU& a, VU& b) {
   using H = HashConstants;
   VU t = hn::Mul(b, hn::Set(d, H::kMix1));
   t = hn::Xor(t, hn::ShiftRight<15>(t));
   a = hn::Mul(hn::Xor(a, t), hn::Set(d, H::kMix2));
   a = hn::Xor(a, hn::ShiftRight<16>(a));
-  b = hn::Mul(hn::Xor(b, a), hn::Set(d, H::kMix3));
+  b = hn::Xor(b, a);
+}
+
+HWY_INLINE void mix_pair(DU d, VU& a, VU& b) {
+  using H = HashConstants;
+  half_mix_pair(d, a, b);
+  b = hn::Mul(b, hn::Set(d, H::kMix3));
   b = hn::Xor(b, hn::ShiftRight<15>(b));
   a = hn::Mul(hn::Xor(a, b), hn::Set(d, H::kMix4));
   a = hn::Xor(a, hn::ShiftRight<14>(a));
@@ -66,10 +72,11 @@ HWY_INLINE PartV eye_part(DU d, const WordsV& w) {
 }
 
 HWY_INLINE PartV light_part(DU d, const WordsV& w, CacheSalt salt) {
-  VU a = hn::Add(w.x, hn::Set(d, salt.a)), b = hn::Add(w.y, hn::Set(d, salt.b));
-  mix_pair(d, a, b);
-  a = hn::Xor(a, w.z), b = hn::Xor(b, hn::And(w.packed, hn::Set(d, ~EndWords::kUnknown)));
-  mix_pair(d, a, b);
+  using H = HashConstants;
+  VU a = hn::Add(hn::Add(hn::Mul(w.x, hn::Set(d, H::kMix2)), hn::Mul(w.z, hn::Set(d, H::kMix3))), hn::Set(d, salt.a));
+  VU b = hn::Add(hn::Add(hn::Mul(w.y, hn::Set(d, H::kMix4)), hn::Mul(w.z, hn::Set(d, H::kMix1))), hn::Set(d, salt.b));
+  b = hn::Xor(b, hn::And(w.packed, hn::Set(d, ~EndWords::kUnknown)));
+  half_mix_pair(d, a, b);
   return {a, hn::Or(hn::And(b, hn::Set(d, ~EndPart::kLow)), unknown_flag(d, w.packed, EndPart::kUnknownLight))};
 }
 

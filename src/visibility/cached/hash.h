@@ -25,14 +25,21 @@ struct HashConstants {
   static constexpr std::uint64_t kC64Mul = 2862933555777941757ull, kC64Add = 7046029254386353087ull;
 };
 
-/// A bijection of 64 bits in two halves in which every bit of the input changes about half of those of the output.
-constexpr void mix_pair(std::uint32_t& a, std::uint32_t& b) {
+/// Half of mix_pair.
+constexpr void half_mix_pair(std::uint32_t& a, std::uint32_t& b) {
   using H = HashConstants;
   std::uint32_t t = b * H::kMix1;
   t ^= t >> 15;
   a = (a ^ t) * H::kMix2;
   a ^= a >> 16;
-  b = (b ^ a) * H::kMix3;
+  b ^= a;
+}
+
+/// A bijection of 64 bits in two halves in which every bit of the input changes about half of those of the output.
+constexpr void mix_pair(std::uint32_t& a, std::uint32_t& b) {
+  using H = HashConstants;
+  half_mix_pair(a, b);
+  b *= H::kMix3;
   b ^= b >> 15;
   a = (a ^ b) * H::kMix4;
   a ^= a >> 14;
@@ -50,11 +57,13 @@ constexpr EndPart eye_part(const EndWords& w) {
   return {a, b | (w.x & 3) | ((w.y & 3) << 2) | (w.unknown() ? EndPart::kUnknownEye : 0)};
 }
 
+/// Light part: made for every query where light samples are not shared, so no more than must be. z is in both halves, so that no two
+/// cells with the same y fall together; half a mixing takes away the structure, which the eye part still has.
 constexpr EndPart light_part(const EndWords& w, CacheSalt salt) {
-  std::uint32_t a = w.x + salt.a, b = w.y + salt.b;
-  mix_pair(a, b);
-  a ^= w.z, b ^= w.packed & ~EndWords::kUnknown;
-  mix_pair(a, b);
+  using H = HashConstants;
+  std::uint32_t a = w.x * H::kMix2 + w.z * H::kMix3 + salt.a;
+  std::uint32_t b = (w.y * H::kMix4 + w.z * H::kMix1 + salt.b) ^ (w.packed & ~EndWords::kUnknown);
+  half_mix_pair(a, b);
   return {a, (b & ~EndPart::kLow) | (w.unknown() ? EndPart::kUnknownLight : 0)};
 }
 

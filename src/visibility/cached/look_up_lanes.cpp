@@ -26,9 +26,9 @@ struct Picker {
   VU index;
   std::uint32_t first;
   bool same, row;
-  HWY_INLINE Picker(DU du, VU i, bool whole) : d(du), index(i), first(hn::GetLane(i)) {
+  HWY_INLINE Picker(DU du, VU i, bool whole, VU lanes_from_0) : d(du), index(i), first(hn::GetLane(i)) {
     same = hn::AllTrue(d, hn::Eq(i, hn::Set(d, first)));
-    row = whole && !same && hn::AllTrue(d, hn::Eq(i, hn::Iota(d, first)));
+    row = whole && !same && hn::AllTrue(d, hn::Eq(i, hn::Add(lanes_from_0, hn::Set(d, first))));
   }
   HWY_INLINE VU operator()(const std::uint32_t* array) const {
     if (same) return hn::Set(d, array[first]);
@@ -169,6 +169,7 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
   const DU d;
   const DF df;
   const std::size_t lanes = hn::Lanes(d);
+  const VU iota = hn::Iota(d, 0);  // once: it is made in memory
   const Format<kCounters> format{d, hn::Set(d, q.rays_a_cell - 1)};
   std::size_t misses = 0, refines = 0, exacts = 0;
   std::uint64_t asked = 0, answered = 0, lookups = 0, rejected = 0;
@@ -176,8 +177,9 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
     const bool whole = i + lanes <= q.count;
     const VU raw_light = hn::LoadU(d, q.light + i);
     const MU valid = hn::And(hn::FirstN(d, q.count - i), hn::Ne(raw_light, hn::Set(d, kNoQuery)));
-    const Picker light(d, hn::IfThenElseZero(valid, raw_light), whole), eye(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.eye + i)), whole);
-    const VU id = q.id ? hn::LoadU(d, q.id + i) : hn::Iota(d, q.first + static_cast<std::uint32_t>(i));
+    const Picker light(d, hn::IfThenElseZero(valid, raw_light), whole, iota);
+    const Picker eye(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.eye + i)), whole, iota);
+    const VU id = q.id ? hn::LoadU(d, q.id + i) : hn::Add(iota, hn::Set(d, q.first + static_cast<std::uint32_t>(i)));
     const Keys keys(d, q, eye, light);
     const MU unknown = hn::And(valid, keys.unknown());
     const MU ask = hn::AndNot(unknown, valid);
@@ -230,8 +232,8 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
     if (!q.id) {
       hn::StoreU(weight, df, weights + q.first + i);
     } else {
-      alignas(kCacheLine) float value[kLanes];
-      alignas(kCacheLine) std::uint32_t place[kLanes];
+      alignas(kCacheLine) float value[kLanes] = {};
+      alignas(kCacheLine) std::uint32_t place[kLanes] = {};
       hn::Store(weight, df, value);
       const std::size_t count = hn::CompressStore(id, done, d, place);
       hn::CompressStore(weight, hn::RebindMask(df, done), df, value);
@@ -271,8 +273,9 @@ void slots(const LookUp& q, std::uint32_t* HWY_RESTRICT index, std::uint32_t* HW
   for (std::size_t i = 0; i < q.count; i += hn::Lanes(d)) {
     const MU valid = hn::FirstN(d, q.count - i);
     const bool whole = i + hn::Lanes(d) <= q.count;
-    const Keys keys(d, q, Picker(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.eye + i)), whole),
-                    Picker(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.light + i)), whole));
+    const VU iota = hn::Iota(d, 0);
+    const Keys keys(d, q, Picker(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.eye + i)), whole, iota),
+                    Picker(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.light + i)), whole, iota));
     hn::StoreU(keys.own.index, d, index + i), hn::StoreU(keys.own.digest, d, digest + i);
   }
 }

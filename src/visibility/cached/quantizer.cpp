@@ -35,9 +35,10 @@ float fast_log2(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x);
   const std::int32_t exponent = (bits - G::kSqrtHalfBits) >> 23;
   const float t = std::bit_cast<float>(bits - (exponent << 23)) - 1;
-  float sum = G::kLog2[5];
-  for (int i = 4; i >= 0; --i) sum = sum * t + G::kLog2[i];
-  return static_cast<float>(exponent) + sum * t;
+  // Pairs first: short chains of dependent operations.
+  const float square = t * t;
+  const float high = (G::kLog2[4] + G::kLog2[5] * t) * square + (G::kLog2[2] + G::kLog2[3] * t);
+  return static_cast<float>(exponent) + (high * square + (G::kLog2[0] + G::kLog2[1] * t)) * t;
 }
 
 Vec2 sphere_to_square(const Vec3& direction, bool equal_area) {

@@ -18,12 +18,9 @@ constexpr int kBits = 20;
 constexpr CacheSalt kSalt{12345, 678};
 
 class Hash : public testing::TestWithParam<CacheHash> {};
-INSTANTIATE_TEST_SUITE_P(All, Hash, testing::Values(CacheHash::separable, CacheHash::recurrence, CacheHash::mix64),
-                         [](const auto& tested) {
-                           return std::string(tested.param == CacheHash::separable    ? "separable"
-                                              : tested.param == CacheHash::recurrence ? "recurrence"
-                                                                                    : "mix64");
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Hash, testing::Values(CacheHash::separable, CacheHash::recurrence, CacheHash::mix64), [](const auto& tested) {
+  return std::string(tested.param == CacheHash::separable ? "separable" : tested.param == CacheHash::recurrence ? "recurrence" : "mix64");
+});
 
 // Neighbouring voxels of a floor times lights with cells side by side: 2^20 keys.
 template <class Take>

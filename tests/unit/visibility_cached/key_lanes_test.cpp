@@ -204,7 +204,8 @@ TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
             const bool visible = format.counters ? seen >= hidden : (rest & 1) != 0;
             bool differs = refine != CacheRefinement::none && mixed;
             if (refine == CacheRefinement::four) {
-              for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) differs |= scalar.differs(moved(e, dx, dy), l, visible);
+              for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}})
+                differs |= scalar.differs(moved(e, dx, dy), l, visible);
             }
             if (refine == CacheRefinement::sixty_four) {
               const bool cells = l.semantic() >= 2;
