@@ -12,8 +12,6 @@
 namespace sightline {
 namespace {
 
-constexpr std::uint32_t kFinite = 0xffffffffu;  // in direction_: the light end has a voxel
-
 class NeePlusPlusWorker final : public VisibilityWorker {
  public:
   NeePlusPlusWorker(const World& world, VisibilityMap& map, bool learns_directions)
@@ -56,11 +54,15 @@ void NeePlusPlusWorker::find_voxels(const QueryBatch& queries) {
 std::uint64_t NeePlusPlusWorker::play(const QueryBatch& queries, std::span<float> weights) {
   kept_.clear(), entry_.clear();
   std::uint64_t asked = 0;
+  std::uint32_t last_eye = kNoQuery, repeat = 0;
   for (std::size_t i = 0; i < queries.size; ++i) {
     weights[i] = 0;
     const std::uint32_t l = queries.light_of[i], e = queries.eye_of[i];
     if (l == kNoQuery) continue;
     ++asked;
+    // An eye point may ask about a light without extent more than once: each time plays for itself.
+    repeat = e == last_eye ? repeat + 1 : 0;
+    last_eye = e;
     std::uint32_t entry = kNoQuery;
     std::uint8_t odds = 0;
     if (!is_infinite(static_cast<QuerySemantic>(queries.semantic[l])))
@@ -69,7 +71,7 @@ std::uint64_t NeePlusPlusWorker::play(const QueryBatch& queries, std::span<float
       entry = map_.entry_of_direction(eye_voxel_[e], light_cell_[l]);
     if (entry != kNoQuery) odds = map_.odds(entry);
     if (odds > 0) {
-      const std::uint32_t number = hash_combine(queries.eye.id[e], queries.light.id[l]) >> 24;
+      const std::uint32_t number = hash_combine(queries.eye.id[e] + 0x9e3779b9u * repeat, queries.light.id[l]) >> 24;
       if (number >= odds) continue;
     }
     weights[i] = odds > 0 ? 256.f / static_cast<float>(odds) : 1.f;

@@ -127,6 +127,24 @@ TEST(NeePlusPlus, ALightBehindAWallCostsFewRays) {
   EXPECT_EQ(answers.mean(), 0.5) << "what is always or never visible stays exact";
 }
 
+TEST(NeePlusPlus, APointThatAsksManyTimesPlaysEachTimeAnew) {
+  const auto world = World::build(scene_of(quad(Vec3(0), {0, 1, 0}, {0, 0, 1})), {}, Context());
+  const auto visibility = make_visibility("nee++", world, {"resolution=1"});
+  ask(*visibility, std::vector<Question>(1000, {{-1, 0, 0}, Vec3(0), {1, 0, 0}, QuerySemantic::point, 0}));
+  visibility->begin_pass({1, 0}, Context());
+  constexpr std::size_t kTimes = 20000;
+  QueryBatch batch = batch_of({{{-1, 0, 0}, Vec3(0), {-1, 2, 0}, QuerySemantic::point, 7}});
+  batch.resize_queries(kTimes);
+  std::fill_n(batch.eye_of.begin(), kTimes, 0u);
+  std::fill_n(batch.light_of.begin(), kTimes, 0u);
+  std::vector<float> weights(padded(kTimes));
+  RayCounts rays;
+  VisibilityCounts counts;
+  visibility->worker()->visible(batch, weights, rays, counts);
+  const double expected = 13.0 / 256 * kTimes;
+  EXPECT_NEAR(static_cast<double>(counts.traced), expected, 5 * std::sqrt(expected));
+}
+
 TEST(NeePlusPlus, WhatIsLearntOneWayHoldsTheOtherWay) {
   const Rooms rooms;
   const auto visibility = learnt(rooms, {"resolution=4", "directions=0"});
