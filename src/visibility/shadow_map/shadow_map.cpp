@@ -52,8 +52,8 @@ struct Shared {
 
   /// Fills a tile of a map unless another thread has.
   void fill(const DepthMap& map, std::size_t tile, DepthMap::Filler& filler) {
-    if (budget_bytes > 0 && tile_bytes.load(std::memory_order_relaxed) > budget_bytes)
-      throw resource_error("shadow maps do not fit in the memory limit").remedy("lower --set resolution or raise --memory-limit");
+    if (tile_bytes.load(std::memory_order_relaxed) > budget_bytes)
+      throw resource_error("shadow maps do not fit in memory").remedy("lower --set resolution or raise --memory-limit");
     const auto start = std::chrono::steady_clock::now();
     RayCounts traced;
     if (!map.fill(tile, world->tracer(), filler, traced)) return;
@@ -64,7 +64,7 @@ struct Shared {
   std::shared_ptr<const World> world;
   LightMaps lights;
   float constant_bias;
-  std::uint64_t budget_bytes = 0;  ///< 0: none
+  std::uint64_t budget_bytes = 0;
   std::atomic<std::uint64_t> tile_bytes{0};
   FillingCost cost;
 };
@@ -155,10 +155,10 @@ class ShadowMapVisibility final : public Visibility {
 
 ShadowMapVisibility::ShadowMapVisibility(std::shared_ptr<const World> world, const ShadowMapSettings& settings, const Context& context)
     : shared_(std::move(world), static_cast<std::uint32_t>(settings.resolution)) {
-  const std::uint64_t taken = current_resident_bytes(), limit = context.memory_budget_bytes;
-  if (limit > 0) shared_.budget_bytes = std::max<std::uint64_t>(limit - std::min(limit, taken), 1);
-  const std::uint64_t whole_bytes = shared_.lights.bytes_when_full();
-  const bool fits = whole_bytes <= (limit > 0 ? shared_.budget_bytes : machine_bytes() / 2);
+  // Without a limit, most of the machine: an error is kinder than a machine that swaps.
+  const std::uint64_t limit = context.memory_budget_bytes > 0 ? context.memory_budget_bytes : machine_bytes() / 4 * 3;
+  shared_.budget_bytes = limit - std::min(limit, current_resident_bytes());
+  const bool fits = shared_.lights.bytes_when_full() <= (context.memory_budget_bytes > 0 ? shared_.budget_bytes : machine_bytes() / 2);
   using Fill = ShadowMapSettings::Fill;
   if (settings.fill == Fill::whole && !fits)
     throw resource_error("whole shadow maps do not fit in memory").remedy("use --set fill=on-demand or lower --set resolution");
