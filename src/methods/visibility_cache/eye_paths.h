@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
+#include "base/core/aligned.h"
 #include "film/frame.h"
 #include "film/view.h"
 #include "methods/visibility_cache/eye_sample.h"
@@ -15,7 +15,9 @@
 namespace sightline {
 
 struct EyePathOptions {
-  int max_depth = 8;           ///< mirrors and panes one after the other
+  /// Delta scatterings one after the other before an eye sample: mirrors, panes, boundaries of media. After one more a path still sees
+  /// what shines, as the reference's paths do with as many bounces.
+  int max_depth = 8;
   float least_weight = 0.01f;  ///< branches whose throughput falls below are dropped
   std::uint64_t seed = 0;
 };
@@ -39,16 +41,14 @@ class EyePaths {
 
   /// Traces samples [range) of every pixel of the tile. `pass_samples` is the number of samples a pixel in the whole pass, which decides
   /// the density of paths. Fills `paths`, replaces `eye_samples`, in the order of paths, branches of a path after it in the order of their
-  /// discovery. Layers other than colour go to `frame`.
+  /// discovery: by depth, reflection before transmission. Camera rays, random numbers and materials are the reference's. Layers of the
+  /// first hit (albedo, normal, position, depth, surface) go to `frame`; colour, direct and indirect are left to the caller.
   void trace(const Tile& tile, SampleRange range, std::uint32_t pass_samples, TilePaths& paths, std::vector<EyeSample>& eye_samples,
              Frame& frame, RayCounts& rays);
 
  private:
-  struct Buffers;
-  std::unique_ptr<Buffers> buffers_;
-  const World& world_;
-  const View& view_;
-  EyePathOptions options_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace sightline
