@@ -29,18 +29,24 @@ struct VirtualPointLightOptions {
 struct VirtualPointLights {
   Vec3Batch position, normal;           ///< normal: unit geometric, on the side that the light arrived from
   Vec3Batch flux;                       ///< Φ: power carried, with all divisions by counts and probabilities done
-  Vec3Batch radiosity;                  ///< where lambert: Φ reflectance / π, so that the radiance sent in every direction of that side
+  Vec3Batch radiosity;                  ///< where lambert: radiance_towards() every direction on the side of `normal`
   AlignedVector<float> error;           ///< of position
   AlignedVector<float> cell_area;       ///< 1 / (M P(p_l)) by k nearest neighbours: surface that one light stands for, world units²
-  AlignedVector<std::uint8_t> lambert;  ///< 1: bsdf is a plain Lambert
+  AlignedVector<std::uint8_t> lambert;  ///< 1: bsdf is Lambert and nothing else
   std::vector<Vec3> wi;                 ///< unit, towards where the light came from
-  std::vector<Frame3> frame;
+  std::vector<Frame3> frame;            ///< shading frame, its normal on the side of the winding (Bsdf's outside), not of `normal`
   std::vector<Bsdf> bsdf;
   std::size_t size = 0;
-  float max_geometry_term = 0;  ///< clamp for cos / r² of connections, world units⁻²; infinity without
+  float max_geometry_term = 0;  ///< clamp for cos cos / r² of connections, world units⁻²; infinity without
 };
 
-/// Lights of one pass. The result depends on options and scene alone, not on the threads of `context`.
+/// What light `i` sends towards unit `w`: a surface at distance r receives irradiance of that times cos / r² times its own cosine. For
+/// Lambert Φ reflectance / π, times shading over geometric cosine of the light's arrival, as paths from the eye have it [Veach1997, §5.3].
+Color radiance_towards(const VirtualPointLights& lights, std::size_t i, const Vec3& w);
+
+/// Lights of one pass; their expected contribution is light that was reflected once to max_bounces times before it reaches the surface
+/// that the eye sees. With backward_share = 1 only once, without mirrors and glass before it, and only where one of the eye samples sees.
+/// The result depends on options and scene alone, not on the threads of `context`.
 VirtualPointLights make_virtual_point_lights(const World& world, const View& view, const VirtualPointLightOptions& options,
                                              const Context& context, RayCounts& rays);
 

@@ -1,0 +1,39 @@
+// Particles that leave the lights, and the surfaces that they meet.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/core/context.h"
+#include "methods/visibility_cache/surface_point.h"
+#include "world/world.h"
+
+namespace sightline::vpl {
+
+/// A surface that scatters, where a particle arrived.
+struct ParticleVertex {
+  SurfacePoint surface;
+  Vec3 wi{0, 0, 1};  ///< unit, towards where the particle came from
+  Color beta{0};     ///< flux of the particle, as if it were the only one, over the geometric cosine of arrival
+  /// Where the light itself is at the far end, so that light sampling might have found it, else 0: densities of light point and surface
+  /// point together, that of the particle, and of light sampling for a given surface point; by area of the surface, and by solid angle
+  /// there or, for delta lights, discrete.
+  double particle_density = 0, light_density = 0;
+};
+
+struct ParticleOptions {
+  int max_bounces = 8;  ///< surfaces a particle, mirrors and glass included
+  std::uint32_t key = 0;
+};
+
+/// Traces particles [first, first + count); vertices in the order of particles' batches, the same for any number of threads. Particles go
+/// through mirrors and glass.
+std::vector<ParticleVertex> trace_particles(const World& world, const ParticleOptions& options, std::uint32_t first, std::size_t count,
+                                            const Context& context, RayCounts& rays);
+
+/// How many particles leave about `wanted` vertices, at most `most`. Decided by particles of their own: a count that heeded the particles
+/// that are kept would be biased.
+std::size_t particles_for(std::size_t wanted, std::size_t most, const World& world, const ParticleOptions& options, const Context& context,
+                          RayCounts& rays);
+
+}  // namespace sightline::vpl

@@ -1,0 +1,44 @@
+// Rooms for virtual point lights, and their indirect light by path tracing.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "film/view.h"
+#include "methods/visibility_cache/virtual_point_lights.h"
+#include "world/world.h"
+
+namespace sightline::test {
+
+struct Room {
+  std::string name;
+  std::shared_ptr<const World> world;
+  Camera camera;
+};
+
+enum class RoomLight { area, point, directional, environment };
+/// A box of edge 2 around the origin with coloured walls and a block in it; directional light and environment come in by a window.
+Room make_room(RoomLight light);
+/// The block is gone, the walls are white, the light hangs from the ceiling; nothing leaves.
+Room make_closed_box(float reflectance, const Color& radiance, float light_size);
+/// Two rooms, one behind the other; a strong light in the far one, and a slit between them. The camera sees the near one.
+Room make_slit_rooms();
+
+struct Receiver {
+  Vec3 position, normal;
+};
+/// Points of the walls of rooms, on the floor and at a wall.
+std::vector<Receiver> receivers();
+
+struct Mean {
+  Color value{0}, error{0};
+};
+/// Irradiance by light that was reflected once up to `max_bounces` times, by paths from the receiver with a light sample at each surface.
+Mean path_traced_irradiance(const World& world, const Receiver& receiver, int max_bounces, int paths, std::uint32_t seed);
+/// The same by virtual point lights with exact visibility.
+Color virtual_irradiance(const World& world, const Receiver& receiver, const VirtualPointLights& lights);
+/// Mean over seeds [first_seed, first_seed + seeds).
+std::vector<Mean> mean_virtual_irradiance(const Room& room, const std::vector<Receiver>& at, VirtualPointLightOptions options, int seeds);
+
+}  // namespace sightline::test
