@@ -64,6 +64,7 @@ bool same_sums(const Frame& a, const Frame& b) {
   for (std::size_t k = 0; k < kAovCount; ++k) {
     const Aov aov = static_cast<Aov>(k);
     if (a.aovs().has(aov) && !std::ranges::equal(a.sums(aov), b.sums(aov))) return false;
+    if (!std::ranges::equal(a.light_image_sums(aov), b.light_image_sums(aov))) return false;
   }
   return true;
 }

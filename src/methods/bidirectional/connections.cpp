@@ -80,6 +80,7 @@ void Connector::connect_light_samples(const SampleBatch& batch, const SubpathTra
   const std::span<const PathVertex> eyes = paths.eye_vertices();
   QueryWriter writer(out, eyes.size(), eyes.size(), eyes.size());
   out.queries.split = QuerySplit::eye;
+  out.queries.surface_ends = SurfaceEnds::area_light;
   std::size_t ends = 0;
   const LightTable& lights = world_.lights();
   for (std::size_t begin = 0; begin < eyes.size() && lights.size() > 0;) {
@@ -119,8 +120,8 @@ void Connector::connect_light_samples(const SampleBatch& batch, const SubpathTra
       float area = 1 / samples_.pdf[i];
       if (semantic == QuerySemantic::surface)
         area *= samples_.distance[i] * samples_.distance[i] / std::max(1e-6f, std::fabs(glm::dot(n, wi)));
-      out.queries.eye.set(ends, eye.surface.position, facing_normal(eye), eye.surface.error,
-                          density_ ? density_->eye_cell_area(eye.surface.position) : 0.f, vertex_id(batch, eye, 0));
+      out.queries.eye.set(ends, eye.surface.position, facing_normal(eye), eye.surface.error, density_ ? density_->eye_cell_area(eye) : 0.f,
+                          vertex_id(batch, eye, 0));
       out.queries.light.set(ends, infinite ? wi : load(samples_.point, i), glm::dot(n, wi) > 0 ? -n : n, samples_.point_error[i],
                             density_ ? area : 0.f, vertex_id(batch, eye, 1));
       out.queries.semantic[ends] = static_cast<std::uint8_t>(semantic);
@@ -161,6 +162,7 @@ void Connector::connect_vertices(const SampleBatch& batch, const SubpathTracer& 
   const std::span<const PathVertex> eyes = paths.eye_vertices(), lights = paths.light_vertices();
   QueryWriter writer(out, eyes.size(), lights.size(), 2 * eyes.size());
   out.queries.split = QuerySplit::symmetric;
+  out.queries.surface_ends = SurfaceEnds::path_vertex;
   light_end_of_.assign(lights.size(), kNoQuery);
   std::size_t eye_ends = 0, light_ends = 0;
   const std::uint32_t longest = static_cast<std::uint32_t>(options_.max_bounces) + 1;  // surfaces between light and camera
@@ -174,7 +176,7 @@ void Connector::connect_vertices(const SampleBatch& batch, const SubpathTracer& 
       if (light_end_of_[y] == kNoQuery) {
         light_end_of_[y] = static_cast<std::uint32_t>(light_ends);
         out.queries.light.set(light_ends, light.surface.position, facing_normal(light), light.surface.error,
-                              density_ ? density_->light_cell_area(light.surface.position) : 0.f, vertex_id(batch, light, 1));
+                              density_ ? density_->light_cell_area(light) : 0.f, vertex_id(batch, light, 1));
         out.queries.semantic[light_ends++] = static_cast<std::uint8_t>(QuerySemantic::surface);
       }
       writer.add(eye_ends, light_end_of_[y], contribution, eye.path, false);
@@ -182,7 +184,7 @@ void Connector::connect_vertices(const SampleBatch& batch, const SubpathTracer& 
     }
     if (!used) continue;
     out.queries.eye.set(eye_ends++, eye.surface.position, facing_normal(eye), eye.surface.error,
-                        density_ ? density_->eye_cell_area(eye.surface.position) : 0.f, vertex_id(batch, eye, 0));
+                        density_ ? density_->eye_cell_area(eye) : 0.f, vertex_id(batch, eye, 0));
   }
   writer.finish(eye_ends, light_ends);
 }

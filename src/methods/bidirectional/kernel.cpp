@@ -17,9 +17,15 @@ void Kernel::trace(const BatchRange& range, bool guides, SampleBatch& batch, Con
   connector_.connect_vertices(batch, paths_, connections.vertices);
 }
 
-void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame) {
+void Kernel::trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCounts& rays) {
+  start_batch(range, view_.width(), seed_, false, batch);
+  paths_.trace_light_paths(batch, rays);
+  paths_.trace_eye_paths(batch, rays);
+}
+
+void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, std::uint32_t first_sample) {
   for (std::size_t path = 0; path < batch.count; ++path) {
-    if (!batch.in_picture[path]) continue;
+    if (!batch.in_picture[path] || batch.sample[path] < first_sample) continue;
     const std::uint32_t pixel = batch.pixel[path];
     frame.add_color(pixel, batch.sample[path], batch.direct[path] + batch.indirect[path]);
     frame.add(Aov::direct, pixel, batch.direct[path]);
@@ -34,6 +40,7 @@ void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& fra
   }
   std::array<CameraImportance::Share, CameraImportance::kMaxShares> shares;
   for (const Splat& splat : batch.splats) {
+    if (splat.sample < first_sample) continue;
     const int count = camera.shares(splat.film, shares.data());
     for (int i = 0; i < count; ++i) {
       const CameraImportance::Share& share = shares[static_cast<std::size_t>(i)];

@@ -20,6 +20,8 @@ class Kernel {
 
   /// Traces the subpaths of a batch, adds what needs no query, and writes the queries for the rest.
   void trace(const BatchRange& range, bool guides, SampleBatch& batch, Connections& connections, PassStatistics& statistics);
+  /// The first half of it alone; the vertices are in paths().
+  void trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCounts& rays);
   const SubpathTracer& paths() const { return paths_; }
 
  private:
@@ -29,7 +31,7 @@ class Kernel {
   std::uint64_t seed_;
 };
 
-/// Adds a finished batch to the frame. Splats land in any tile: for one thread at a time.
-void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame);
+/// Adds the samples of a finished batch from index `first_sample` on to the frame. Splats land in any tile: for one thread at a time.
+void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, std::uint32_t first_sample);
 
 }  // namespace sightline::bidirectional

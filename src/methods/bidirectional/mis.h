@@ -34,6 +34,23 @@ struct MisVertex {
   }
 };
 
+/// What the next vertex inherits from `vertex`, whose scattering chose the way on: `reverse` is the density of directions with which the
+/// other side's sampler would have come back.
+inline MisVertex after(const MisVertex& vertex, Heuristic h, double reverse, bool scatters_by_delta) {
+  MisVertex next;
+  next.previous_sum = vertex.sum(h, reverse, scatters_by_delta);
+  next.previous_pdf = vertex.pdf;
+  next.connect = scatters_by_delta ? 0 : 1;
+  return next;
+}
+
+/// Completes `next` at the end of an edge: `pdf` is the density of directions of its ray, and the cosines are those between the edge and
+/// both surfaces (1 where there is none). From infinity `pdf` is by area across the beam, and the squared length counts as 1.
+inline void arrive(MisVertex& next, double pdf, double cosine, double previous_cosine, double squared_length) {
+  next.pdf = pdf * cosine / squared_length;
+  next.to_previous = previous_cosine / squared_length;
+}
+
 /// Weight of a connection of two vertices: `eye_pdf_light` is the density by area with which the eye's sampler would have made the light
 /// subpath's end, `light_pdf_eye` the converse; sums are MisVertex::sum of both ends (0 for an eye that is the camera).
 inline double connection_weight(Heuristic h, double eye_pdf_light, double light_own_pdf, double light_sum, double light_pdf_eye,

@@ -147,8 +147,8 @@ void SubpathTracer::make_vertices(SampleBatch* batch, std::span<const float> u_m
     const double cosine = std::fabs(static_cast<double>(glm::dot(normal, direction)));
     if (!(squared > 0) || !(cosine > 0)) continue;
     // Densities become densities by area of this vertex, and those of the other side by area of the one before.
-    walk.mis.pdf = walk.pdf * cosine / squared;
-    walk.mis.to_previous = is_black(walk.normal) ? 1 : std::fabs(static_cast<double>(glm::dot(walk.normal, direction))) / squared;
+    const double previous_cosine = is_black(walk.normal) ? 1 : std::fabs(static_cast<double>(glm::dot(walk.normal, direction)));
+    arrive(walk.mis, walk.pdf, cosine, previous_cosine, squared);
     if (side == Side::light) {
       walk.beta /= static_cast<float>(cosine);
       if (walk.depth == 0) {
@@ -245,9 +245,7 @@ void SubpathTracer::scatter(std::vector<PathVertex>& vertices, std::size_t first
     walk.from = surface.position, walk.normal = surface.geometric_normal;
     walk.from_infinity = false;
     walk.pdf = sample->pdf;
-    walk.mis.previous_sum = vertex.mis.sum(options_.heuristic, sample->pdf_reverse, sample->is_delta);
-    walk.mis.previous_pdf = vertex.mis.pdf;
-    walk.mis.connect = sample->is_delta ? 0 : 1;
+    walk.mis = after(vertex.mis, options_.heuristic, static_cast<double>(sample->pdf_reverse), sample->is_delta);
     if (sample->crosses) walk.medium = glm::dot(sample->direction, surface.geometric_normal) < 0 ? surface.interior : MediumId{};
     // A rough bounce blurs what lies behind it: a wider cone, coarser texture levels.
     if (side == Side::eye && !sample->is_delta) walk.cone_spread = std::max(walk.cone_spread, 0.25f);

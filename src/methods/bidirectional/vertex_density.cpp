@@ -15,6 +15,12 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
 
 }  // namespace
 
+VertexDensity::VertexDensity(Kind kind, const Bounds& bounds, std::uint64_t samples_a_pass)
+    : kind_(kind),
+      origin_(bounds.is_empty() ? Vec3(0) : bounds.lower),
+      cell_(bounds.half_diagonal() > 0 ? 0.01f * bounds.half_diagonal() : 1.f),
+      samples_a_pass_(samples_a_pass) {}
+
 std::uint64_t VertexDensity::cell_of(const Vec3& p) const {
   const auto index = [this](float v) {
     const float cells = v / cell_;
@@ -24,7 +30,7 @@ std::uint64_t VertexDensity::cell_of(const Vec3& p) const {
   return index(d.x) | index(d.y) << 21 | index(d.z) << 42;
 }
 
-void VertexDensity::count(std::span<std::uint64_t> eye_cells, std::span<std::uint64_t> light_cells, std::uint64_t paths) {
+void VertexDensity::count(std::span<const std::uint64_t> eye_cells, std::span<const std::uint64_t> light_cells, std::uint64_t paths) {
   paths_ = paths;
   const std::size_t vertices = eye_cells.size() + light_cells.size();
   table_.assign(std::bit_ceil(2 * vertices + 2), {0, 0, 0});
@@ -49,15 +55,23 @@ const VertexDensity::Entry* VertexDensity::find(const Vec3& p) const {
   return nullptr;
 }
 
-// A cell holds about cell² of surface; one that no vertex was counted in has less than one.
-float VertexDensity::eye_cell_area(const Vec3& p) const {
-  const Entry* entry = find(p);
-  const auto count = static_cast<float>(std::max(1u, entry ? entry->eye : 1u));
-  return cell_ * cell_ * static_cast<float>(paths_) / (count * static_cast<float>(samples_a_pass_));
+// After a delta there is no density by area.
+float VertexDensity::conditional_area(const PathVertex& vertex) {
+  return vertex.mis.connect > 0 || vertex.depth == 1 ? static_cast<float>(1 / vertex.mis.pdf) : 0.f;
 }
 
-float VertexDensity::light_cell_area(const Vec3& p) const {
-  const Entry* entry = find(p);
+// A cell of the grid holds about cell² of surface; one that no vertex was counted in has less than one.
+float VertexDensity::eye_cell_area(const PathVertex& vertex) const {
+  const auto samples = static_cast<float>(samples_a_pass_);
+  if (kind_ == Kind::conditional) return conditional_area(vertex) / samples;
+  const Entry* entry = find(vertex.surface.position);
+  const auto count = static_cast<float>(std::max(1u, entry ? entry->eye : 1u));
+  return cell_ * cell_ * static_cast<float>(paths_) / (count * samples);
+}
+
+float VertexDensity::light_cell_area(const PathVertex& vertex) const {
+  if (kind_ == Kind::conditional) return conditional_area(vertex);
+  const Entry* entry = find(vertex.surface.position);
   const auto count = static_cast<float>(std::max(1u, entry ? entry->light : 1u));
   return cell_ * cell_ * static_cast<float>(paths_) / count;
 }
