@@ -1,9 +1,11 @@
 #include "visibility/cached/cached.h"
 
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "visibility/cached/core.h"
+#include "visibility/cached/wave.h"
 #include "visibility/cached/worker.h"
 
 namespace sightline {
@@ -14,12 +16,34 @@ class CachedVisibility final : public Visibility {
   CachedVisibility(std::shared_ptr<const World> world, const CachedVisibilitySettings& settings)
       : core_(std::make_shared<CacheCore>(std::move(world), settings)) {}
   bool binary() const override { return core_->settings.residual == 0; }
-  void begin_pass(const VisibilityPass& pass, const Context&) override { core_->pass = pass; }
+  float cluster_edge() const override { return core_->settings.ce; }
+  void begin_pass(const VisibilityPass& pass, const Context& context) override {
+    const CachedVisibilitySettings& s = core_->settings;
+    const bool keeps = s.reuse || (s.scope == CacheScope::frame && pass.frame == core_->pass.frame);
+    core_->pass = pass;
+    if (shared_ && !keeps) shared_->clear(context);
+  }
   std::unique_ptr<VisibilityWorker> worker() override { return std::make_unique<CachedWorker>(core_); }
+  std::unique_ptr<VisibilityWave> wave(std::size_t slots) override {
+    const CachedVisibilitySettings& s = core_->settings;
+    if (s.scope == CacheScope::tile) return Visibility::wave(slots);
+    const std::lock_guard lock(mutex_);
+    if (!shared_) {
+      shared_ = std::make_shared<SharedTable>(s.shared_table_bits);
+      core_->bytes += shared_->table().bytes();
+    }
+    const bool of_pass = s.scope == CacheScope::pass && !s.reuse;
+    const CacheSalt salt = core_->salt(of_pass ? core_->pass.first_sample : 0, s.reuse ? 0 : core_->pass.frame, kSharedScope);
+    return std::make_unique<CachedWave>(core_, shared_, salt, slots);
+  }
   std::uint64_t memory_bytes() const override { return core_->bytes; }
 
  private:
+  static constexpr std::uint32_t kSharedScope = 0xffffffffu;
+
   std::shared_ptr<CacheCore> core_;
+  std::shared_ptr<SharedTable> shared_;
+  std::mutex mutex_;  // of shared_ itself; waves of one time use it in turn
 };
 
 }  // namespace

@@ -33,11 +33,23 @@ struct CacheCore {
   }
 };
 
-/// Whether the residual's ray is traced for this query [Sightline: README.md]: a number in [0, 1) of the identities of both ends.
-inline float residual_number(std::uint32_t eye_id, std::uint32_t light_id, std::uint32_t first_sample) {
-  std::uint32_t a = eye_id, b = light_id ^ (first_sample * HashConstants::kMix1);
-  mix_pair(a, b);
-  return static_cast<float>(b >> 8) * 0x1p-24f;
-}
+/// Which cached answers are corrected by a ray, by the identities of both ends.
+class ResidualChoice {
+ public:
+  ResidualChoice(const CachedVisibilitySettings& settings, const VisibilityPass& pass)
+      : inside_(settings.residual),
+        edge_(settings.residual * settings.residual_edge < 1 ? settings.residual * settings.residual_edge : 1.f),
+        salt_(pass.first_sample * HashConstants::kMix1) {}
+  float probability(bool at_edge) const { return at_edge ? edge_ : inside_; }
+  bool taken(const QueryBatch& queries, std::size_t i, float probability) const {
+    std::uint32_t a = queries.eye.id[queries.eye_of[i]], b = queries.light.id[queries.light_of[i]] ^ salt_;
+    mix_pair(a, b);
+    return static_cast<float>(b >> 8) * 0x1p-24f < probability;
+  }
+
+ private:
+  float inside_, edge_;
+  std::uint32_t salt_;
+};
 
 }  // namespace sightline

@@ -1,6 +1,7 @@
 // The cache itself: 32-bit slots that are overwritten when keys collide [Popov2013, §4.1].
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -48,25 +49,27 @@ class SlotTable {
     if (slot == 0) note(index);
     slot = format.after(slot, tag, visible);
   }
-  /// For inserting with several threads into disjoint ranges of slots: does not note; the caller hands in what was empty afterwards.
+  /// For threads that insert into ranges of their own: returns whether the slot was empty, and leaves it to the caller to clear.
   bool insert_unnoted(std::uint32_t index, std::uint32_t tag, bool visible, SlotFormat format) {
     std::uint32_t& slot = slots_[index];
     const bool was_empty = slot == 0;
     slot = format.after(slot, tag, visible);
     return was_empty;
   }
-  void note(std::uint32_t index) {
-    if (written_.size() < limit_)
-      written_.push_back(index);
-    else
-      overflowed_ = true;
-  }
+  void erase_range(std::size_t first, std::size_t count) { std::fill_n(slots_.get() + first, count, 0u); }
   void clear();
 
  private:
   struct Release {
     void operator()(std::uint32_t* p) const;
   };
+  void note(std::uint32_t index) {
+    if (written_.size() < limit_)
+      written_.push_back(index);
+    else
+      overflowed_ = true;
+  }
+
   std::unique_ptr<std::uint32_t[], Release> slots_;
   std::vector<std::uint32_t> written_;
   std::size_t limit_ = 0;

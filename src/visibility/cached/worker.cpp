@@ -156,7 +156,7 @@ void CachedWorker::resolve_duplicates(const Batch& batch, std::size_t group, int
 // V^c + (B / p) (V - V^c) with B = 1 in a share p of all cached answers: right in the mean, and noisy only where the cache is wrong.
 void CachedWorker::add_residual(const Batch& batch) {
   const QueryBatch& queries = batch.queries;
-  const float p = core_->settings.residual, p_edge = std::min(1.f, p * core_->settings.residual_edge);
+  const ResidualChoice choice(core_->settings, core_->pass);
   which_.resize(std::max(which_.size(), kResidualPacket));
   std::size_t count = 0;
   const auto flush = [&] {
@@ -164,15 +164,14 @@ void CachedWorker::add_residual(const Batch& batch) {
     const std::span<const std::uint8_t> occluded = tracer_.trace(queries, std::span(which_).first(count), batch.rays, batch.counts);
     for (std::size_t k = 0; k < count; ++k) {
       float& weight = batch.weights[which_[k]];
-      weight += ((occluded[k] ? 0.f : 1.f) - weight) / (mark_[which_[k]] == kEdge ? p_edge : p);
+      weight += ((occluded[k] ? 0.f : 1.f) - weight) / choice.probability(mark_[which_[k]] == kEdge);
     }
     batch.counts.residual += count;
     count = 0;
   };
   for (std::uint32_t i = 0; i < queries.size; ++i) {
     if (queries.light_of[i] == kNoQuery || mark_[i] == kTraced) continue;
-    const float u = residual_number(queries.eye.id[queries.eye_of[i]], queries.light.id[queries.light_of[i]], core_->pass.first_sample);
-    if (u >= (mark_[i] == kEdge ? p_edge : p)) continue;
+    if (!choice.taken(queries, i, choice.probability(mark_[i] == kEdge))) continue;
     which_[count++] = i;
     if (count == kResidualPacket) flush();
   }
