@@ -82,6 +82,9 @@ class Method {
   /// Throws Error{usage} where scene or options do not suit the method (beyond lights and materials, which the session checks).
   virtual void check(const Scene&, const RenderJob&) const {}
   virtual std::unique_ptr<const Bake> prepare(const RenderJob&, const Context&) const { return nullptr; }
+  /// Passes begin at multiples of this many samples, and end at one or with the picture: what shares answers among its samples needs them
+  /// in the same groups however a picture is cut into passes.
+  virtual std::uint32_t pass_multiple(const RenderJob&) const { return 1; }
   /// Adds samples [range.begin, range.end) of every pixel to the frame, tile by tile; tiles that have them already are skipped. N passes
   /// equal one of N. On cancellation throws Error{interrupted}; complete tiles stay valid.
   virtual void render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,

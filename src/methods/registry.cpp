@@ -7,13 +7,15 @@
 #include "methods/bidirectional/method.h"
 #include "methods/method.h"
 #include "methods/reference/method.h"
+#include "methods/visibility_cache/method.h"
 
 namespace sightline {
 
 std::span<const Method* const> methods() {
   static const ReferenceMethod reference;
   static const BidirectionalMethod bidirectional;
-  static const std::array<const Method*, 2> table = {&reference, &bidirectional};
+  static const VisibilityCacheMethod visibility_cache;
+  static const std::array<const Method*, 3> table = {&reference, &bidirectional, &visibility_cache};
   return table;
 }
 

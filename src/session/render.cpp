@@ -106,6 +106,13 @@ void check_frame_memory(IVec2 size_px, const RenderRequest& request, std::uint64
       .remedy(fmt::format("{}render smaller or with fewer layers", context.memory_budget_bytes ? "raise --memory-limit, or " : ""));
 }
 
+/// Samples that share answers must be rendered together: both ends of the range lie between such groups.
+void check_whole_passes(SampleRange samples, std::uint32_t multiple, std::uint32_t spp) {
+  if (samples.begin % multiple == 0 && (samples.end % multiple == 0 || samples.end == spp)) return;
+  throw usage_error(fmt::format("--sample-range {}:{} cuts through a group of samples that share answers", samples.begin, samples.end))
+      .remedy(fmt::format("with these settings both ends must be multiples of {}", multiple));
+}
+
 RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
                     const RenderRequest& request, const Context& context, const Stopwatch& since_start, std::vector<FrameSink*> sinks) {
   const Method& method = find_method(request.method);
@@ -129,6 +136,8 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
   job.visibility = visibility.get();
   method.check(world->scene(), job);
+  const std::uint32_t multiple = std::max(1u, method.pass_multiple(job));
+  check_whole_passes(samples, multiple, job.total_spp);
 
   const AovSet aovs = frame_layers(request);
   check_frame_memory(size_px, request, world->acceleration_bytes() + scene_bytes(world->scene()), context);
@@ -154,7 +163,7 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   job.bake = bake.get();
   result.seconds.prepare = prepare_watch.seconds();
 
-  const ScheduleLimits limits{samples, request.target_error, request.time_limit_s};
+  const ScheduleLimits limits{samples, request.target_error, request.time_limit_s, multiple};
   ScheduleState state;
   const Stopwatch render_watch;
   std::optional<double> seconds_left;

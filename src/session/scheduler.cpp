@@ -44,6 +44,7 @@ ScheduledWork schedule(const ScheduleLimits& limits, const ScheduleState& state)
     if (state.seconds_per_sample > 0)
       size = std::min(size, static_cast<std::uint32_t>(std::clamp(left / state.seconds_per_sample, 1.0, 1e9)));
   }
+  size = (size + limits.multiple - 1) / limits.multiple * limits.multiple;
   return {StopReason::none, {state.next_sample, std::min(limits.samples.end, state.next_sample + size)}};
 }
 

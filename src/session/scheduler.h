@@ -13,9 +13,10 @@ enum class StopReason { none, samples, target_error, time_limit, interrupted };
 std::string_view name_of(StopReason reason);
 
 struct ScheduleLimits {
-  SampleRange samples;                 ///< what is to be rendered
+  SampleRange samples;                 ///< what is to be rendered; begins at a multiple of `multiple`
   std::optional<double> target_error;  ///< relative
   std::optional<double> time_limit_s;  ///< of the whole run, counted from its start
+  std::uint32_t multiple = 1;          ///< passes begin at multiples of it
 };
 
 struct ScheduleState {

@@ -109,6 +109,9 @@ class LightTable {
   /// The batch call of sample() for lights of a subset alone: densities contain the choice within it.
   void sample(const LightSubset& subset, const Vec3Batch& position, const Vec3Batch& normal, std::span<const float> u_pick,
               std::span<const float> u0, std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
+  /// Points on lights that the caller chose: entry light[i] for lane i, with its probability. Not for empty tables.
+  void sample_entries(std::span<const std::uint32_t> light, std::span<const float> selection, const Vec3Batch& position,
+                      std::span<const float> u0, std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const;
   /// A point on one light. `selection` is multiplied into the density.
   LightSample sample_light(std::uint32_t light, float selection, const Vec3& position, const Vec2& u) const;
   /// Entry of an emissive triangle (HitBatch::instance, primitive), or of a sphere with kSphereBit; kNoLight if it does not emit.
@@ -128,6 +131,8 @@ class LightTable {
   /// Densities with which sample_emission() would have produced the ray from `point` of entry `light` along unit `direction`.
   EmissionPdf emission_pdf(std::uint32_t light, const Vec3& point, const Vec3& direction) const;
   std::uint32_t environment_entry() const;  ///< kNoLight without one
+  /// Surface of an area light that may be seen from one side, world units²; 0 for others.
+  float area(std::uint32_t light) const;
   /// Total power by entry, W, as the picker sees it.
   float power(std::uint32_t light) const;
 

@@ -52,6 +52,8 @@ class Visibility {
   virtual bool binary() const { return true; }
   /// Every query is a ray: callers that can trace their own packets may skip the interface.
   virtual bool exact() const { return false; }
+  /// Edge of the screen area whose queries may share an answer, in eye samples (C_E): who asks can spread out its first queries.
+  virtual float cluster_edge() const { return 1; }
   virtual void begin_pass(const VisibilityPass& pass, const Context& context);
   virtual std::unique_ptr<VisibilityWorker> worker() = 0;
   /// `slots` batches a wave. By default each batch is answered by a worker with the slot as its scope.

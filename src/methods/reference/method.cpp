@@ -13,6 +13,10 @@
 namespace sightline {
 namespace {
 
+std::uint32_t samples_a_pass(const RenderJob& job) {
+  return std::min(static_cast<std::uint32_t>(job.settings.as<ReferenceSettings>().pass_spp), std::max(job.total_spp, 1u));
+}
+
 KernelOptions kernel_options(const RenderJob& job, const Context& context) {
   const auto& settings = job.settings.as<ReferenceSettings>();
   KernelOptions options;
@@ -26,7 +30,7 @@ KernelOptions kernel_options(const RenderJob& job, const Context& context) {
   if (options.one_hit) options.max_bounces = 0;
   if (job.visibility && !job.visibility->exact()) {
     options.visibility = job.visibility;
-    options.samples_a_pass = std::min(static_cast<std::uint32_t>(settings.pass_spp), std::max(job.total_spp, 1u));
+    options.samples_a_pass = samples_a_pass(job);
   }
   return options;
 }
@@ -60,6 +64,10 @@ const MethodInfo& ReferenceMethod::info() const {
 }
 
 SettingsValue ReferenceMethod::default_settings() const { return SettingsValue::of<ReferenceSettings>(); }
+
+std::uint32_t ReferenceMethod::pass_multiple(const RenderJob& job) const {
+  return job.visibility && !job.visibility->exact() ? samples_a_pass(job) : 1;
+}
 
 void ReferenceMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                   const Context& context) const {

@@ -9,6 +9,7 @@ class ReferenceMethod final : public Method {
  public:
   const MethodInfo& info() const override;
   SettingsValue default_settings() const override;
+  std::uint32_t pass_multiple(const RenderJob& job) const override;
   void render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                    const Context& context) const override;
 };

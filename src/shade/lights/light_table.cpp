@@ -113,71 +113,81 @@ void LightTable::sample_by(const AliasTable& choice, std::optional<std::uint32_t
                            std::span<const float> u_pick, std::span<const float> u0, std::span<const float> u1, std::size_t count,
                            LightSampleBatch& samples) const {
   if (samples.pdf.size() < padded(count)) samples.resize(count);
-  const LightLists& lists = impl_->lists;
-  // One sample after the other where there is no vector code: `draw(i)` for lanes [begin, end).
-  const auto one_by_one = [&](std::size_t begin, std::size_t end, auto&& draw) {
+  // One sample after the other where there is no vector code.
+  const auto scalar = [&](std::size_t begin, std::size_t end) {
     std::array<LightSample, kLanes> drawn;
-    while (begin < end) {
+    for (; begin < end; begin += kLanes) {
       const std::size_t n = std::min(kLanes, end - begin);
-      for (std::size_t k = 0; k < n; ++k) drawn[k] = draw(begin + k);
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t i = begin + k;
+        drawn[k] = {};
+        if (!choice.can_sample()) continue;
+        const std::uint32_t light = only ? *only : choice.sample(u_pick[i]).index;
+        drawn[k] = impl_->sample_light(light, choice.probability(light), {position.x[i], position.y[i], position.z[i]}, {u0[i], u1[i]});
+      }
       samples.set(begin, std::span(drawn.data(), n));
-      begin += n;
     }
   };
-  const auto place = [&](std::size_t i) { return Vec3(position.x[i], position.y[i], position.z[i]); };
-  const auto scalar = [&](std::size_t begin, std::size_t end) {
-    one_by_one(begin, end, [&](std::size_t i) {
-      if (!choice.can_sample()) return LightSample();
-      const std::uint32_t light = only ? *only : choice.sample(u_pick[i]).index;
-      return impl_->sample_light(light, choice.probability(light), place(i), {u0[i], u1[i]});
-    });
-  };
-  const auto lanes_from = [&](std::size_t begin, std::size_t n) {
-    LightLanes lanes{};
-    lanes.x = position.x.data() + begin;
-    lanes.y = position.y.data() + begin;
-    lanes.z = position.z.data() + begin;
-    lanes.u0 = u0.data() + begin;
-    lanes.u1 = u1.data() + begin;
-    lanes.count = n;
-    return lanes;
-  };
   if (!choice.can_sample()) return scalar(0, count);
-
   if (only) {
-    LightLanes lanes = lanes_from(0, count);
+    LightLanes lanes{};
+    lanes.x = position.x.data(), lanes.y = position.y.data(), lanes.z = position.z.data();
+    lanes.u0 = u0.data(), lanes.u1 = u1.data();
+    lanes.count = count;
     lanes.single = *only;
     lanes.single_selection = choice.probability(*only);
     return scalar(impl_->sample_lanes(lanes, *only, *only, u0, u1, 0, samples), count);
   }
-  // Lights for a chunk of lanes, then its runs: all of it where one kind is all there is, else whole padded groups that chose one kind.
   constexpr std::size_t kChunk = 256;
   alignas(kCacheLine) std::array<std::uint32_t, kChunk> light;
   alignas(kCacheLine) std::array<float, kChunk> probability;
-  const std::size_t group = lists.is_all_one_kind() ? kChunk : kLanes;
   std::size_t begin = 0;
   while (begin < count) {
     const std::size_t picked =
         pick_lights(choice, u_pick.data() + begin, std::min(kChunk, count - begin), light.data(), probability.data());
     if (picked == 0) return scalar(begin, count);
-    for (std::size_t at = 0; at < picked; at += group) {
-      const std::size_t n = std::min(group, picked - at);
-      // Which kinds a group holds shows in its range of entries; where there is but one kind, nothing needs to be looked at.
-      std::uint32_t least = 0, greatest = static_cast<std::uint32_t>(lists.size() - 1);
-      if (!lists.is_all_one_kind()) {
-        const auto [low, high] =
-            std::minmax_element(light.begin() + static_cast<std::ptrdiff_t>(at), light.begin() + static_cast<std::ptrdiff_t>(at + n));
-        least = *low, greatest = *high;
-      }
-      LightLanes lanes = lanes_from(begin + at, n);
-      lanes.light = light.data() + at;
-      lanes.selection = probability.data() + at;
-      const std::size_t done = impl_->sample_lanes(lanes, least, greatest, u0, u1, begin + at, samples);
-      const std::size_t first = begin + at;
-      one_by_one(first + done, first + n,
-                 [&](std::size_t i) { return impl_->sample_light(light[i - begin], probability[i - begin], place(i), {u0[i], u1[i]}); });
-    }
+    impl_->sample_chosen({light.data(), picked}, {probability.data(), picked}, position, u0, u1, begin, samples);
     begin += picked;
+  }
+}
+
+void LightTable::sample_entries(std::span<const std::uint32_t> light, std::span<const float> selection, const Vec3Batch& position,
+                                std::span<const float> u0, std::span<const float> u1, std::size_t count, LightSampleBatch& samples) const {
+  if (samples.pdf.size() < padded(count)) samples.resize(count);
+  impl_->sample_chosen(light.first(count), selection.first(count), position, u0, u1, 0, samples);
+}
+
+// Lights that have been chosen, for lanes from `first` on: all of them together where one kind is all there is, else whole padded groups
+// that chose one kind.
+void LightTable::Impl::sample_chosen(std::span<const std::uint32_t> light, std::span<const float> selection, const Vec3Batch& position,
+                                     std::span<const float> u0, std::span<const float> u1, std::size_t first,
+                                     LightSampleBatch& samples) const {
+  const std::size_t group = lists.is_all_one_kind() ? light.size() : kLanes;
+  for (std::size_t at = 0; at < light.size(); at += group) {
+    const std::size_t n = std::min(group, light.size() - at), begin = first + at;
+    // Which kinds a group holds shows in its range of entries; where there is but one kind, nothing needs to be looked at.
+    std::uint32_t least = 0, greatest = static_cast<std::uint32_t>(lists.size() - 1);
+    if (!lists.is_all_one_kind()) {
+      const auto [low, high] = std::ranges::minmax_element(light.subspan(at, n));
+      least = *low, greatest = *high;
+    }
+    LightLanes lanes{};
+    lanes.x = position.x.data() + begin, lanes.y = position.y.data() + begin, lanes.z = position.z.data() + begin;
+    lanes.u0 = u0.data() + begin, lanes.u1 = u1.data() + begin;
+    lanes.count = n;
+    lanes.light = light.data() + at, lanes.selection = selection.data() + at;
+    const std::size_t done = sample_lanes(lanes, least, greatest, u0, u1, begin, samples);
+    std::array<LightSample, kLanes> drawn;
+    for (std::size_t k = done; k < n;) {
+      const std::size_t few = std::min(kLanes, n - k);
+      for (std::size_t j = 0; j < few; ++j) {
+        const std::size_t lane = begin + k + j;
+        drawn[j] = sample_light(light[at + k + j], selection[at + k + j], {position.x[lane], position.y[lane], position.z[lane]},
+                                {u0[lane], u1[lane]});
+      }
+      samples.set(begin + k, std::span(drawn.data(), few));
+      k += few;
+    }
   }
 }
 
@@ -234,6 +244,14 @@ float LightTable::environment_pdf(const Vec3& position, const Vec3& normal, cons
   const LightLists& lists = impl_->lists;
   if (!lists.environment) return 0;
   return impl_->picker.probability(position, normal, lists.environment_index) * lists.environment->pdf(direction);
+}
+
+float LightTable::area(std::uint32_t light) const {
+  const LightLists& lists = impl_->lists;
+  if (light < lists.punctual_begin) return lists.flats[light].area;
+  if (light < lists.sphere_begin || light >= lists.sphere_begin + lists.spheres.size()) return 0;
+  const float radius = lists.spheres[light - lists.sphere_begin].radius;
+  return 2 * kPi * radius * radius;
 }
 
 float LightTable::power(std::uint32_t light) const { return light < impl_->lists.size() ? impl_->lists.powers[light] : 0.f; }

@@ -24,6 +24,8 @@ struct LightTable::Impl {
   /// Vector code for lanes whose lights are of one kind that has some; returns how many lanes it did.
   std::size_t sample_lanes(const LightLanes& lanes, std::uint32_t least, std::uint32_t greatest, std::span<const float> u0,
                            std::span<const float> u1, std::size_t first, LightSampleBatch& samples) const;
+  void sample_chosen(std::span<const std::uint32_t> light, std::span<const float> selection, const Vec3Batch& position,
+                     std::span<const float> u0, std::span<const float> u1, std::size_t first, LightSampleBatch& samples) const;
   Color texture_of(const FlatLight& light, const Vec2& u) const {
     const FlatEmitter& emitter = lists.emitters[light.emitter];
     const Vec2 uv = lists.meshes.uv(emitter, light.primitive, flat_parameters(emitter.flags, u));

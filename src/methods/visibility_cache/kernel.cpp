@@ -1,0 +1,295 @@
+#include "methods/visibility_cache/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/sample/sobol.h"
+#include "methods/visibility_cache/pixel_order.h"
+
+namespace sightline {
+namespace {
+
+// Light samples worked off at a time: they, their ends and their answers stay in the L2 cache beside the visibility's table.
+constexpr std::size_t kBatch = 4096;
+
+using dimension::pair_of;
+
+Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
+void add(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] += v.x, batch.y[i] += v.y, batch.z[i] += v.z; }
+void fill(Vec3Batch& batch, std::size_t first, std::size_t count, const Vec3& v) {
+  std::fill_n(batch.x.data() + first, count, v.x);
+  std::fill_n(batch.y.data() + first, count, v.y);
+  std::fill_n(batch.z.data() + first, count, v.z);
+}
+void copy(const Vec3Batch& from, std::size_t count, Vec3Batch& to) {
+  std::copy_n(from.x.data(), count, to.x.data());
+  std::copy_n(from.y.data(), count, to.y.data());
+  std::copy_n(from.z.data(), count, to.z.data());
+}
+std::uint8_t byte(QuerySemantic semantic) { return static_cast<std::uint8_t>(semantic); }
+
+}  // namespace
+
+EyeLights::EyeLights(const LightTable& table)
+    : area(table.subset(LightSubset::kArea)),
+      environment(table.subset(LightSubset::kEnvironment)),
+      punctual(table.subset(LightSubset::kPunctual).entries),
+      area_of_entry(table.size(), 0.f) {
+  for (const std::uint32_t light : area.entries) area_of_entry[light] = table.area(light) / area.choice.probability(light);
+}
+
+EyeKernel::EyeKernel(const World& world, const View& view, Visibility& visibility, const VisibilityCacheSettings& settings,
+                     std::uint64_t seed, const EyeLights& lights)
+    : world_(world),
+      settings_(settings),
+      seed_(seed),
+      lights_(lights),
+      spatial_order_(visibility.exact()),
+      first_segment_(visibility.cluster_edge() * visibility.cluster_edge()),
+      eye_paths_(world, view, {settings.specular_depth, settings.least_weight, seed}),
+      worker_(visibility.worker()) {}
+
+void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& pass, Frame& frame, PassStatistics& statistics) {
+  eye_paths_.trace(tile, range, pass.samples, paths_, eye_samples_, frame, statistics.rays);
+  put_in_order(tile);
+  direct_.resize(paths_.count), indirect_.resize(paths_.count);
+  fill(direct_, 0, paths_.count, Color(0)), fill(indirect_, 0, paths_.count, Color(0));
+  worker_->begin(tile.index);
+  if (!lights_.punctual.empty()) in_chunks(lights_.punctual.size(), [&](EyeRange chunk) { shade_punctual(chunk, statistics); });
+  const auto n = static_cast<std::size_t>(pass.light_samples);
+  if (!lights_.area.empty()) in_chunks(n, [&](EyeRange chunk) { shade_area(chunk, pass, statistics); });
+  if (!lights_.environment.empty()) in_chunks(n, [&](EyeRange chunk) { shade_environment(chunk, pass, statistics); });
+  if (pass.virtual_lights.size > 0) in_chunks(pass.virtual_lights.size, [&](EyeRange chunk) { shade_virtual(chunk, pass, statistics); });
+  write(frame);
+}
+
+// Sample by sample, and within a sample in the pixels' order: the first sample of all pixels is spread out, later ones find its answers.
+void EyeKernel::put_in_order(const Tile& tile) {
+  order_.resize(eye_samples_.size());
+  if (spatial_order_) return std::iota(order_.begin(), order_.end(), 0u);
+  const IVec2 size(tile.x1 - tile.x0, tile.y1 - tile.y0);
+  const auto pixels = static_cast<std::size_t>(tile.pixel_count());
+  if (ranked_size_ != size) {
+    const double first = std::max(1.0, static_cast<double>(pixels) / static_cast<double>(first_segment_));
+    const std::vector<std::uint32_t> order = settings_.order == VisibilityCacheSettings::Order::scanline
+                                                 ? scanline_order(size.x, size.y)
+                                                 : halton_order(size.x, size.y, first, static_cast<double>(settings_.order_growth));
+    rank_.resize(pixels);
+    for (std::uint32_t i = 0; i < pixels; ++i) rank_[order[i]] = i;
+    ranked_size_ = size;
+  }
+  // Counting sort; stable, so that a path's branches keep their order.
+  const auto bucket_of = [&](const EyeSample& eye) {
+    const auto lane = static_cast<int>(eye.slot % kLanes);
+    const auto group = static_cast<int>(eye.slot / kLanes);
+    const int sample = group % static_cast<int>(paths_.samples), block = group / static_cast<int>(paths_.samples);
+    const int blocks_x = (size.x + 3) / 4;
+    const int x = block % blocks_x * 4 + lane % 4, y = block / blocks_x * 4 + lane / 4;
+    return static_cast<std::size_t>(sample) * pixels + rank_[static_cast<std::size_t>(y * size.x + x)];
+  };
+  bucket_.assign(pixels * paths_.samples + 1, 0);
+  for (const EyeSample& eye : eye_samples_) ++bucket_[bucket_of(eye) + 1];
+  std::partial_sum(bucket_.begin(), bucket_.end(), bucket_.begin());
+  for (std::uint32_t i = 0; i < eye_samples_.size(); ++i) order_[bucket_[bucket_of(eye_samples_[i])]++] = i;
+}
+
+template <class Shade>
+void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
+  const std::size_t chunk = std::clamp<std::size_t>(kBatch / per_eye, 1, 1024);
+  contributions_.resize(chunk * per_eye);
+  weights_.resize(padded(chunk * per_eye) + kLanes);
+  for (auto* numbers : {&u0_, &u1_, &u2_}) numbers->resize(padded(chunk * per_eye));
+  for (auto* numbers : {&key_, &index_, &entry_}) numbers->resize(padded(chunk * per_eye));
+  position_.resize(chunk * per_eye), normal_.resize(chunk * per_eye);
+  for (std::size_t begin = 0; begin < order_.size(); begin += chunk) shade({begin, std::min(begin + chunk, order_.size())});
+}
+
+void EyeKernel::set_eye_ends(EyeRange chunk) {
+  queries_.eye.resize(chunk.second - chunk.first);
+  chunk_slot_.resize(queries_.eye.size);
+  for (std::size_t k = chunk.first; k < chunk.second; ++k) {
+    const EyeSample& e = eye(k);
+    queries_.eye.set(k - chunk.first, e.position, e.geometric_normal, e.error, e.area, e.id);
+    chunk_slot_[k - chunk.first] = e.slot;
+  }
+}
+
+// Random numbers, positions and normals for `per_eye` light samples a point: a pixel's samples continue one sequence.
+void EyeKernel::draw_numbers(EyeRange chunk, std::size_t per_eye, std::uint32_t first_pair) {
+  std::size_t lane = 0;
+  for (std::size_t k = chunk.first; k < chunk.second; ++k, lane += per_eye) {
+    const EyeSample& e = eye(k);
+    std::uint32_t key = pixel_key(seed_, paths_.pixel[e.slot]);
+    if (e.branch != 0) key = hash_combine(key, e.branch);
+    std::fill_n(key_.data() + lane, per_eye, key);
+    std::iota(index_.data() + lane, index_.data() + lane + per_eye, paths_.sample[e.slot] * static_cast<std::uint32_t>(per_eye));
+    fill(position_, lane, per_eye, e.position);
+    fill(normal_, lane, per_eye, e.geometric_normal);
+  }
+  sobol_2d(key_.data(), index_.data(), first_pair + dimension::kLightPoint, lane, u0_.data(), u1_.data());
+  sobol_1d(key_.data(), index_.data(), first_pair + dimension::kLightPick, lane, u2_.data());
+}
+
+// All of them are asked: their ends are shared by the whole chunk.
+void EyeKernel::shade_punctual(EyeRange chunk, PassStatistics& statistics) {
+  const std::size_t count = lights_.punctual.size(), eyes = chunk.second - chunk.first;
+  for (std::size_t k = 0; k < eyes; ++k) {
+    std::copy(lights_.punctual.begin(), lights_.punctual.end(), entry_.data() + k * count);
+    fill(position_, k * count, count, eye(chunk.first + k).position);
+  }
+  std::fill_n(u0_.data(), eyes * count, 0.5f), std::fill_n(u1_.data(), eyes * count, 0.5f);
+  std::fill_n(u2_.data(), eyes * count, 1.f);  // the probability of each choice
+  world_.lights().sample_entries(entry_, u2_, position_, u0_, u1_, eyes * count, light_);
+  contributions_.size = 0;
+  for (std::size_t k = 0; k < eyes; ++k)
+    add_samples(eye(chunk.first + k), static_cast<std::uint32_t>(k), light_, k * count, count, 0, {}, contributions_);
+
+  set_eye_ends(chunk);
+  queries_.resize_lights(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    // The first eye point's samples tell where each light is.
+    const bool infinite = std::isinf(light_.distance[j]);
+    queries_.light.set(j, infinite ? load(light_.wi, j) : load(light_.point, j), Vec3(0), light_.point_error[j], 0,
+                       static_cast<std::uint32_t>(j));
+    queries_.semantic[j] = byte(infinite ? QuerySemantic::direction : QuerySemantic::point);
+  }
+  queries_.kind = BatchKind::shadow;
+  ask(direct_, statistics);
+}
+
+void EyeKernel::shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
+  const auto n = static_cast<std::size_t>(pass.light_samples);
+  const std::size_t eyes = chunk.second - chunk.first, lanes = eyes * n;
+  draw_numbers(chunk, n, pair_of(0, dimension::kLightPick));
+  world_.lights().sample(lights_.area, position_, normal_, u2_, u0_, u1_, lanes, light_);
+  const SampleWeights weights{1 / static_cast<float>(n), 0, 0};
+  contributions_.size = 0;
+  for (std::size_t k = 0; k < eyes; ++k)
+    add_samples(eye(chunk.first + k), static_cast<std::uint32_t>(k), light_, k * n, n, static_cast<std::uint32_t>(k * n), weights,
+                contributions_);
+
+  set_eye_ends(chunk);
+  queries_.resize_lights(lanes);
+  copy(light_.point, lanes, queries_.light.position);
+  copy(light_.normal, lanes, queries_.light.normal);
+  std::copy_n(light_.point_error.data(), lanes, queries_.light.error.data());
+  std::fill_n(queries_.semantic.data(), lanes, byte(QuerySemantic::surface));
+  std::copy_n(index_.data(), lanes, queries_.light.id.data());
+  // N_S / (N_P P(p_l)): the light's area, shared out among its samples.
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::uint32_t light = light_.light[i];
+    queries_.light.cell_area[i] = light < lights_.area_of_entry.size() ? lights_.area_of_entry[light] * weights.scale : 0.f;
+  }
+  queries_.kind = BatchKind::shadow;
+  queries_.surface_ends = SurfaceEnds::area_light;
+  ask(direct_, statistics);
+}
+
+// The environment's samples and the BSDF's, weighted against each other by the balance heuristic. Cells follow the density of both, with
+// that of the BSDF taken as uniform over the hemisphere: keys of neighbours must not depend on where a lobe points.
+void EyeKernel::shade_environment(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
+  const auto n = static_cast<std::size_t>(pass.light_samples);
+  const auto of_bsdf = static_cast<std::size_t>(std::floor(settings_.bsdf_share * static_cast<float>(n)));
+  const std::size_t of_light = n - of_bsdf, eyes = chunk.second - chunk.first, lanes = eyes * n;
+  const LightTable& lights = world_.lights();
+  draw_numbers(chunk, n, pair_of(1, dimension::kLightPick));
+  lights.sample(lights_.environment, position_, normal_, u2_, u0_, u1_, lanes, light_);
+  const float inverse = 1 / static_cast<float>(of_light);
+  const SampleWeights weights{inverse, static_cast<float>(of_light), static_cast<float>(of_bsdf)};
+  contributions_.size = 0;
+  for (std::size_t k = 0; k < eyes; ++k) {
+    const EyeSample& e = eye(chunk.first + k);
+    const auto eye_index = static_cast<std::uint32_t>(k), lane = static_cast<std::uint32_t>(k * n);
+    add_samples(e, eye_index, light_, lane, of_light, lane, weights, contributions_);
+    for (std::size_t i = lane + of_light; i < lane + n; ++i) {
+      const Vec3 wo_local = e.frame.to_local(e.wo);
+      const std::optional<BsdfSample> sample = e.bsdf.sample(wo_local, u2_[i], {u0_[i], u1_[i]});
+      light_.pdf[i] = 0;
+      if (!sample || sample->is_delta) continue;
+      const Vec3 wi = e.frame.to_world(sample->wi);
+      if ((glm::dot(wi, e.geometric_normal) * glm::dot(e.wo, e.geometric_normal) < 0) != sample->is_transmission) continue;
+      const float light_pdf = lights.environment_density(wi);
+      const float share = 1 / (weights.mis_bsdf * sample->pdf + weights.mis_light * light_pdf);
+      const Color value = e.weight * sample->weight * lights.environment(wi) * (sample->pdf * share);
+      light_.wi.x[i] = wi.x, light_.wi.y[i] = wi.y, light_.wi.z[i] = wi.z;
+      light_.pdf[i] = light_pdf;
+      if (!(max_component(value) > 0)) continue;
+      const std::size_t at = contributions_.size++;
+      contributions_.color.x[at] = value.x, contributions_.color.y[at] = value.y, contributions_.color.z[at] = value.z;
+      contributions_.eye[at] = eye_index, contributions_.light[at] = static_cast<std::uint32_t>(i);
+    }
+  }
+
+  set_eye_ends(chunk);
+  queries_.resize_lights(lanes);
+  copy(light_.wi, lanes, queries_.light.position);
+  fill(queries_.light.normal, 0, lanes, Vec3(0));
+  std::fill_n(queries_.light.error.data(), lanes, 0.f);
+  std::fill_n(queries_.semantic.data(), lanes, byte(QuerySemantic::solid_angle));
+  std::copy_n(index_.data(), lanes, queries_.light.id.data());
+  const float uniform = static_cast<float>(of_bsdf) / (2 * kPi);
+  for (std::size_t i = 0; i < lanes; ++i)
+    queries_.light.cell_area[i] = 1 / (static_cast<float>(of_light) * light_.pdf[i] + uniform + 1e-20f);
+  queries_.kind = BatchKind::shadow_diffuse;
+  ask(direct_, statistics);
+}
+
+void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
+  const VirtualPointLights& lights = pass.virtual_lights;
+  contributions_.size = 0;
+  for (std::size_t k = chunk.first; k < chunk.second; ++k)
+    add_virtual_lights(eye(k), static_cast<std::uint32_t>(k - chunk.first), lights, pass.general_virtual_lights, contributions_);
+
+  set_eye_ends(chunk);
+  queries_.resize_lights(lights.size);
+  copy(lights.position, lights.size, queries_.light.position);
+  copy(lights.normal, lights.size, queries_.light.normal);
+  std::copy_n(lights.error.data(), lights.size, queries_.light.error.data());
+  std::copy_n(lights.cell_area.data(), lights.size, queries_.light.cell_area.data());
+  std::iota(queries_.light.id.data(), queries_.light.id.data() + lights.size, 0u);
+  std::fill_n(queries_.semantic.data(), lights.size, byte(QuerySemantic::surface));
+  queries_.kind = BatchKind::shadow_diffuse;
+  queries_.surface_ends = SurfaceEnds::virtual_light;
+  ask(indirect_, statistics);
+}
+
+// Asks about all contributions and adds up those that arrive, eye point by eye point.
+void EyeKernel::ask(Vec3Batch& radiance, PassStatistics& statistics) {
+  const std::size_t count = contributions_.size;
+  if (count == 0) return;
+  queries_.resize_queries(count);
+  std::copy_n(contributions_.eye.data(), count, queries_.eye_of.data());
+  std::copy_n(contributions_.light.data(), count, queries_.light_of.data());
+  worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
+  for (std::size_t begin = 0; begin < count;) {
+    const std::uint32_t k = contributions_.eye[begin];
+    std::size_t end = begin + 1;
+    while (end < count && contributions_.eye[end] == k) ++end;
+    add(radiance, chunk_slot_[k], weighted_sum(contributions_, weights_.data(), begin, end));
+    begin = end;
+  }
+}
+
+void EyeKernel::write(Frame& frame) {
+  const auto channels = [](const Vec3Batch& batch, std::size_t at) {
+    return std::array<const float*, 3>{batch.x.data() + at, batch.y.data() + at, batch.z.data() + at};
+  };
+  const auto each_block = [&](auto&& take) {
+    for (std::size_t at = 0; at < paths_.count; at += paths_.samples * kLanes)
+      take(at, PixelBlock{
+                   paths_.pixel.data() + at, paths_.inside.data() + at, paths_.sample[at], static_cast<std::uint32_t>(paths_.samples), {}});
+  };
+  const auto add_all = [&](const Vec3Batch& from, Vec3Batch& to) {
+    for (std::size_t i = 0; i < paths_.count; ++i) to.x[i] += from.x[i], to.y[i] += from.y[i], to.z[i] += from.z[i];
+  };
+  add_all(paths_.emitted, direct_);
+  each_block([&](std::size_t at, PixelBlock block) {
+    block.channel = channels(direct_, at), frame.add(Aov::direct, block);
+    block.channel = channels(indirect_, at), frame.add(Aov::indirect, block);
+  });
+  add_all(indirect_, direct_);
+  each_block([&](std::size_t at, PixelBlock block) { block.channel = channels(direct_, at), frame.add_color(block); });
+}
+
+}  // namespace sightline
