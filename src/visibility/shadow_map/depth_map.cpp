@@ -14,6 +14,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 DepthMap::DepthMap(std::uint32_t resolution, std::uint32_t faces)
     : resolution_(resolution),
       tiles_across_((resolution + kTileSize - 1) / kTileSize),
+      texel_size_(1 / static_cast<float>(resolution)),
       tile_count_(static_cast<std::size_t>(faces) * tiles_across_ * tiles_across_),
       texels_(tile_count_ * kTileTexels),
       begun_(std::make_unique<std::vector<std::atomic<std::uint8_t>>>(tile_count_)) {}

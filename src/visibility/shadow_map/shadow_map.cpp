@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "base/core/error.h"
 #include "base/parallel/parallel.h"
 #include "visibility/query_rays.h"
+#include "visibility/shadow_map/cube_lanes.h"
 #include "visibility/shadow_map/light_maps.h"
 #include "visibility/shadow_map/settings.h"
 
@@ -76,18 +78,22 @@ class ShadowMapWorker final : public VisibilityWorker {
   void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) override;
 
  private:
-  struct Missing {
-    std::uint32_t query, map;
-    std::size_t texel;
+  static constexpr std::size_t kBlock = CubeLanes::kSize;
+  struct Asked {
+    std::uint32_t query, map, texel;
     float distance;  ///< bias taken off
   };
   void find_maps(const QueryBatch& queries);
+  /// Queries [begin, end): the weights of those whose texel is filled, and lists of the others. Returns how many have a map.
+  std::uint64_t look_up(const QueryBatch& queries, std::size_t begin, std::size_t end, std::span<float> weights);
 
   Shared& shared_;
   QueryTracer tracer_;
   AlignedVector<std::uint32_t> map_of_;  ///< of each light end
   std::vector<std::uint32_t> exact_;
-  std::vector<Missing> missing_;
+  CubeLanes lanes_{};
+  std::array<Asked, kBlock> cube_{}, asked_{};
+  std::vector<Asked> missing_;  ///< whose tile is not filled
   DepthMap::Filler filler_;
 };
 
@@ -99,36 +105,59 @@ void ShadowMapWorker::find_maps(const QueryBatch& queries) {
                                      Vec3(ends.position.x[l], ends.position.y[l], ends.position.z[l]));
 }
 
-void ShadowMapWorker::visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) {
-  find_maps(queries);
-  exact_.clear(), missing_.clear();
+std::uint64_t ShadowMapWorker::look_up(const QueryBatch& queries, std::size_t begin, std::size_t end, std::span<float> weights) {
   const std::vector<DepthMap>& maps = shared_.lights.maps();
   const QueryEnds& eyes = queries.eye;
-  std::uint64_t looked_up = 0;
-  for (std::size_t i = 0; i < queries.size; ++i) {
+  std::size_t cubes = 0, count = 0;
+  for (std::size_t i = begin; i < end; ++i) {
     weights[i] = 0;
-    if (queries.light_of[i] == kNoQuery) continue;
-    const std::uint32_t map = map_of_[queries.light_of[i]];
-    if (map == LightMaps::kNone) {
+    const std::uint32_t l = queries.light_of[i];
+    if (l == kNoQuery) continue;
+    if (map_of_[l] == LightMaps::kNone) {
       exact_.push_back(static_cast<std::uint32_t>(i));
       continue;
     }
-    ++looked_up;
     const std::size_t e = queries.eye_of[i];
-    const Vec3 normal(eyes.normal.x[e], eyes.normal.y[e], eyes.normal.z[e]);
-    const DepthMap::Place place = maps[map].locate({eyes.position.x[e], eyes.position.y[e], eyes.position.z[e]}, normal);
-    // A receiver that leans away from the light changes its distance by the tangent for each texel's width; points in space do not.
-    const bool leans = normal != Vec3(0);
-    const float cosine = std::clamp(place.cosine, 1e-4f, 1.f);
-    const float slope = leans ? std::sqrt(1 - cosine * cosine) / cosine : 0.f;
-    const float distance = place.distance - (kBiasTexels * place.footprint * slope + shared_.constant_bias);
-    const float depth = maps[map].depth(place.texel);
-    if (depth > 0)
-      weights[i] = distance <= depth ? 1.f : 0.f;
-    else
-      missing_.push_back({static_cast<std::uint32_t>(i), map, place.texel, distance});
+    const DepthMap& map = maps[map_of_[l]];
+    if (const Vec3* center = map.center()) {
+      lanes_.x[cubes] = eyes.position.x[e] - center->x, lanes_.nx[cubes] = eyes.normal.x[e];
+      lanes_.y[cubes] = eyes.position.y[e] - center->y, lanes_.ny[cubes] = eyes.normal.y[e];
+      lanes_.z[cubes] = eyes.position.z[e] - center->z, lanes_.nz[cubes] = eyes.normal.z[e];
+      cube_[cubes++] = {static_cast<std::uint32_t>(i), map_of_[l], 0, 0};
+      continue;
+    }
+    const DepthMap::Place place =
+        map.locate({eyes.position.x[e], eyes.position.y[e], eyes.position.z[e]}, {eyes.normal.x[e], eyes.normal.y[e], eyes.normal.z[e]});
+    asked_[count++] = {static_cast<std::uint32_t>(i), map_of_[l], static_cast<std::uint32_t>(place.texel),
+                       place.distance - (kBiasTexels * place.change + shared_.constant_bias)};
   }
-  for (const Missing& missing : missing_) {
+  if (cubes > 0) {
+    const DepthMap& any = maps[cube_[0].map];
+    lanes_.locate(any.resolution(), any.tiles_across());
+  }
+  for (std::size_t k = 0; k < cubes; ++k, ++count) {
+    asked_[count] = cube_[k];
+    asked_[count].texel = lanes_.texel[k];
+    asked_[count].distance = lanes_.distance[k] - (kBiasTexels * lanes_.change[k] + shared_.constant_bias);
+  }
+  for (const Asked& asked : std::span(asked_).first(count)) maps[asked.map].prefetch(asked.texel);
+  for (const Asked& asked : std::span(asked_).first(count)) {
+    const float depth = maps[asked.map].depth(asked.texel);
+    weights[asked.query] = asked.distance <= depth ? 1.f : 0.f;
+    if (depth == 0) missing_.push_back(asked);
+  }
+  return count;
+}
+
+void ShadowMapWorker::visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) {
+  find_maps(queries);
+  exact_.clear(), missing_.clear();
+  std::uint64_t looked_up = 0;
+  // In blocks: first all places, so that their texels are on the way, then the texels.
+  for (std::size_t begin = 0; begin < queries.size; begin += kBlock)
+    looked_up += look_up(queries, begin, std::min(queries.size, begin + kBlock), weights);
+  const std::vector<DepthMap>& maps = shared_.lights.maps();
+  for (const Asked& missing : missing_) {
     const DepthMap& map = maps[missing.map];
     if (map.depth(missing.texel) == 0) shared_.fill(map, DepthMap::tile_of(missing.texel), filler_);
     weights[missing.query] = missing.distance <= map.depth(missing.texel) ? 1.f : 0.f;

@@ -7,6 +7,8 @@
 #include "base/core/error.h"
 #include "base/math/frame.h"
 #include "unit/visibility_rivals/rivals_support.h"
+#include "visibility/shadow_map/cube_lanes.h"
+#include "visibility/shadow_map/depth_map.h"
 
 namespace sightline::test {
 namespace {
@@ -238,6 +240,35 @@ TEST(ShadowMap, WhatDoesNotFitInMemoryIsAnError) {
   const auto maps = info.make(litter.world, settings, context);
   maps->begin_pass({}, context);
   EXPECT_THROW(ask(*maps, litter.questions), Error);
+}
+
+TEST(ShadowMap, LanesFindTheTexelsThatTheScalarDefinitionFinds) {
+  std::mt19937 random(7);
+  const Vec3 center(0.1f, -2, 3);
+  const DepthMap map = DepthMap::around(center, 1000);
+  CubeLanes lanes{};
+  for (int round = 0; round < 200; ++round) {
+    std::array<Vec3, CubeLanes::kSize> points, normals;
+    for (std::size_t i = 0; i < CubeLanes::kSize; ++i) {
+      Vec3 offset = random_point(random, 4);
+      // Exactly on axes, diagonals and the light, too.
+      if (i % 8 == 1) offset = Vec3(0, offset.y, 0);
+      if (i % 8 == 2) offset = Vec3(offset.x, -offset.x, offset.x);
+      if (i % 32 == 3) offset = Vec3(0);
+      points[i] = center + offset;
+      normals[i] = i % 8 == 4 ? Vec3(0) : i % 8 == 5 ? glm::normalize(points[i] - center) : random_direction(random);
+      const Vec3 d = points[i] - center;
+      lanes.x[i] = d.x, lanes.y[i] = d.y, lanes.z[i] = d.z;
+      lanes.nx[i] = normals[i].x, lanes.ny[i] = normals[i].y, lanes.nz[i] = normals[i].z;
+    }
+    lanes.locate(map.resolution(), map.tiles_across());
+    for (std::size_t i = 0; i < CubeLanes::kSize; ++i) {
+      const DepthMap::Place place = map.locate(points[i], normals[i]);
+      EXPECT_EQ(lanes.texel[i], place.texel);
+      EXPECT_FLOAT_EQ(lanes.distance[i], place.distance);
+      EXPECT_NEAR(lanes.change[i], place.change, 2e-3 * place.change + 1e-6);
+    }
+  }
 }
 
 TEST(ShadowMap, PlacesThatAreNotNumbersStayInsideTheMap) {
