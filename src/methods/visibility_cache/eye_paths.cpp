@@ -56,7 +56,8 @@ struct EyePaths::Impl {
   void visit_surface(int depth, std::size_t i, Branch& branch, TilePaths& paths, Frame& frame);
   void follow(std::size_t i, const Branch& branch, const SurfaceDetail& detail, MaterialId material, const Frame3& shading,
               const BsdfSample& lobe, const Vec3& wi, std::uint32_t lobe_number);
-  EyeSample& add_sample(std::size_t i, float cross_section);
+  void add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight, std::uint32_t slot,
+                  std::uint32_t id);
   float bounded(float area) const { return area > least_area_ ? std::min(area, largest_area_) : least_area_; }
   void write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const;
   void sort_by_path(std::size_t first_sample);
@@ -160,17 +161,20 @@ Branch EyePaths::Impl::first_branch(std::size_t i, const TilePaths& paths) const
   return branch;
 }
 
-// Everything but colours of the sample at hit i.
-EyeSample& EyePaths::Impl::add_sample(std::size_t i, float cross_section) {
-  EyeSample& sample = samples_->emplace_back();
+void EyePaths::Impl::add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight,
+                                std::uint32_t slot, std::uint32_t id) {
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
   const float cosine = glm::dot(direction, geometric);
-  sample.position = load(surfaces_.position, i);
-  sample.geometric_normal = cosine > 0 ? -geometric : geometric;
-  sample.wo = -direction;
-  sample.error = surfaces_.error[i];
-  sample.area = bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine));
-  return sample;
+  samples_->push_back({.position = load(surfaces_.position, i),
+                       .geometric_normal = cosine > 0 ? -geometric : geometric,
+                       .wo = -direction,
+                       .frame = shading,
+                       .bsdf = bsdf,
+                       .weight = weight,
+                       .error = surfaces_.error[i],
+                       .area = bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine)),
+                       .slot = slot,
+                       .id = id});
 }
 
 void EyePaths::Impl::write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const {
@@ -189,11 +193,9 @@ void EyePaths::Impl::visit_plain_first_hit(std::size_t i, const TilePaths& paths
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
   const Vec3 shading = load(surfaces_.shading_normal, i);
   const Color albedo = load(surfaces_.albedo, i);
-  EyeSample& sample = add_sample(i, camera_.cross_section(direction, hits_.t[i]));
-  sample.frame = frame_from_normal(sees_alike(shading, geometric, direction) ? shading : geometric);
-  sample.bsdf = Bsdf(Lambert{albedo});
-  sample.slot = static_cast<std::uint32_t>(path);
-  sample.id = hash_combine(path_key_[path], paths.sample[path]);
+  add_sample(i, camera_.cross_section(direction, hits_.t[i]),
+             frame_from_normal(sees_alike(shading, geometric, direction) ? shading : geometric), Bsdf(Lambert{albedo}), Color(1),
+             static_cast<std::uint32_t>(path), hash_combine(path_key_[path], paths.sample[path]));
   write_aovs(i, paths.pixel[path], albedo, shading, frame);
 }
 
@@ -236,9 +238,7 @@ void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, Til
   if (!bsdf.is_delta()) {
     float cross_section = depth == 0 ? camera_.cross_section(direction, t) : branch.pixel.cross_section(direction, t);
     if (depth > 0 && lens) cross_section += branch.lens.cross_section(direction, t);
-    EyeSample& sample = add_sample(i, cross_section);
-    sample.frame = shading, sample.bsdf = bsdf, sample.weight = branch.throughput;
-    sample.slot = branch.slot, sample.id = branch.id;
+    add_sample(i, cross_section, shading, bsdf, branch.throughput, branch.slot, branch.id);
   }
   if (plain) return;
   const bool passes = is_interface(scene, material);

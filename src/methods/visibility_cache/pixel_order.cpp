@@ -40,9 +40,9 @@ std::vector<std::uint32_t> halton_order(int width, int height, double first_segm
     if (x < columns && y < rows) order.push_back(y * columns + x);
   }
 
-  const auto less_along_curve = [columns](std::uint32_t p, std::uint32_t q) {
-    return morton_code(p % columns, p / columns) < morton_code(q % columns, q / columns);
-  };
+  std::vector<std::uint64_t> place(order.size());
+  for (const std::uint32_t pixel : order) place[pixel] = morton_code(pixel % columns, pixel / columns);
+  const auto less_along_curve = [&place](std::uint32_t p, std::uint32_t q) { return place[p] < place[q]; };
   const double size = static_cast<double>(order.size()), factor = growth > 1.01 ? growth : 1.01;
   double bound = first_segment > 1 ? first_segment : 1.0;
   for (std::size_t begin = 0; begin < order.size(); bound *= factor) {
