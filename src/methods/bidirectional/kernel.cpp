@@ -12,9 +12,16 @@ void Kernel::trace(const BatchRange& range, bool guides, SampleBatch& batch, Con
   start_batch(range, view_.width(), seed_, guides, batch);
   paths_.trace_light_paths(batch, statistics.rays);
   paths_.trace_eye_paths(batch, statistics.rays);
+  const std::uint64_t before = statistics.visibility.traced;
   connector_.connect_camera(batch, paths_, statistics.rays, statistics.visibility);
+  statistics.method_statistics["light_image_rays"] += static_cast<double>(statistics.visibility.traced - before);
   connector_.connect_light_samples(batch, paths_, connections.light_samples);
   connector_.connect_vertices(batch, paths_, connections.vertices);
+  auto& numbers = statistics.method_statistics;
+  numbers["eye_vertices"] += static_cast<double>(paths_.eye_vertices().size());
+  numbers["light_vertices"] += static_cast<double>(paths_.light_vertices().size());
+  numbers["light_sample_queries"] += static_cast<double>(connections.light_samples.queries.size);
+  numbers["connection_queries"] += static_cast<double>(connections.vertices.queries.size);
 }
 
 void Kernel::trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCounts& rays) {
@@ -23,9 +30,10 @@ void Kernel::trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCoun
   paths_.trace_eye_paths(batch, rays);
 }
 
-void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, std::uint32_t first_sample) {
+void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, SampleRange wanted) {
+  const auto is_wanted = [&](std::uint32_t sample) { return sample >= wanted.begin && sample < wanted.end; };
   for (std::size_t path = 0; path < batch.count; ++path) {
-    if (!batch.in_picture[path] || batch.sample[path] < first_sample) continue;
+    if (!batch.in_picture[path] || !is_wanted(batch.sample[path])) continue;
     const std::uint32_t pixel = batch.pixel[path];
     frame.add_color(pixel, batch.sample[path], batch.direct[path] + batch.indirect[path]);
     frame.add(Aov::direct, pixel, batch.direct[path]);
@@ -40,7 +48,7 @@ void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& fra
   }
   std::array<CameraImportance::Share, CameraImportance::kMaxShares> shares;
   for (const Splat& splat : batch.splats) {
-    if (splat.sample < first_sample) continue;
+    if (!is_wanted(splat.sample)) continue;
     const int count = camera.shares(splat.film, shares.data());
     for (int i = 0; i < count; ++i) {
       const CameraImportance::Share& share = shares[static_cast<std::size_t>(i)];

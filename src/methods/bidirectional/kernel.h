@@ -31,7 +31,7 @@ class Kernel {
   std::uint64_t seed_;
 };
 
-/// Adds the samples of a finished batch from index `first_sample` on to the frame. Splats land in any tile: for one thread at a time.
-void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, std::uint32_t first_sample);
+/// Adds those samples of a finished batch that lie in `wanted` to the frame. Splats land in any tile: for one thread at a time.
+void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& frame, SampleRange wanted);
 
 }  // namespace sightline::bidirectional

@@ -87,7 +87,7 @@ void render_tiles(const Pass& pass, SampleRange range, Frame& frame, PassStatist
         queries->add_answers(worker.weights, worker.batch);
       }
       const std::lock_guard lock(frame_mutex);
-      commit(worker.batch, pass.camera, frame, 0);
+      commit(worker.batch, pass.camera, frame, samples);
     }
   });
 }
@@ -101,11 +101,12 @@ struct WaveBatch {
 };
 
 // Answers are shared by the whole pass: its tiles come in waves of a fixed number, and all queries of a wave are asked together. Tiles that
-// a picture resumed from a file has already are rendered again, unless they come last, since others share their answers.
-void render_waves(const Pass& pass, const VertexDensity& density, SampleRange range, Frame& frame, PassStatistics& statistics,
-                  const Context& context) {
+// a picture resumed from a file has already are rendered again, unless they come last, since others share their answers; for the same
+// reason the whole of the pass `range` is rendered where only the samples `wanted` of it are added.
+void render_waves(const Pass& pass, const VertexDensity& density, SampleRange range, SampleRange wanted, Frame& frame,
+                  PassStatistics& statistics, const Context& context) {
   constexpr std::size_t kPathsPerWave = 32 * 1024;
-  const auto lacks = [&](std::size_t tile) { return frame.first_sample() + frame.samples_done(tile) < range.end; };
+  const auto lacks = [&](std::size_t tile) { return frame.first_sample() + frame.samples_done(tile) < wanted.end; };
   std::size_t tiles = frame.tile_count();
   while (tiles > 0 && !lacks(tiles - 1)) --tiles;
   if (tiles == 0) return;
@@ -151,11 +152,11 @@ void render_waves(const Pass& pass, const VertexDensity& density, SampleRange ra
     });
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t have = frame.first_sample() + frame.samples_done(batches[i].range.tile.index);
-      commit(batches[i].batch, pass.camera, frame, have);
+      commit(batches[i].batch, pass.camera, frame, {have, wanted.end});
       statistics += batches[i].statistics;
     }
     for (std::size_t tile = first; tile < last; ++tile) {
-      frame.set_samples_done(tile, std::max(frame.samples_done(tile), range.end - frame.first_sample()));
+      frame.set_samples_done(tile, std::max(frame.samples_done(tile), wanted.end - frame.first_sample()));
       context.report("render", static_cast<double>(tile + 1), static_cast<double>(tiles));
     }
   }
@@ -236,13 +237,15 @@ void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, F
     render_tiles(pass, range, frame, statistics, context);
     return;
   }
-  // Passes of the visibility are cut at absolute multiples of their size, wherever those of the session begin and end.
+  // Passes of the visibility lie at absolute multiples of their size, wherever those of the session begin and end.
   const auto& bake = dynamic_cast<const DensityBake&>(*job.bake);
   const std::uint32_t size = samples_a_pass(job);
   for (std::uint32_t begin = range.begin; begin < range.end;) {
-    const std::uint32_t end = std::min(range.end, (begin / size + 1) * size);
-    render_waves(pass, bake.density, {begin, end}, frame, statistics, context);
-    begin = end;
+    const std::uint32_t first = begin / size * size;
+    const SampleRange whole{first, std::min(first + size, std::max(job.total_spp, range.end))};
+    const SampleRange wanted{begin, std::min(range.end, whole.end)};
+    render_waves(pass, bake.density, whole, wanted, frame, statistics, context);
+    begin = wanted.end;
   }
 }
 

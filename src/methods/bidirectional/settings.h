@@ -30,7 +30,8 @@ struct BidirectionalSettings {
            .symbol = "P",
            .choices = {"marginal", "conditional"}});
     visit("pass_spp", &BidirectionalSettings::pass_spp,
-          {.help = "samples a pixel that share the answers of a visibility cache; passes and sample ranges are best multiples of it",
+          {.help = "samples a pixel that share the answers of a visibility cache: more of them, finer cells; sample ranges are best "
+                   "multiples of it",
            .minimum = 1,
            .maximum = 64});
   }
