@@ -20,10 +20,26 @@ std::shared_ptr<const World> build(const Scene& scene) { return World::build(sce
 
 AovSet first_hit_layers() { return parse_aovs("albedo,normal,position,depth,surface"); }
 
+// Materials that random numbers choose, smooth normals, a background and a camera with a lens.
+Scene mixed_scene() {
+  Scene scene;
+  const MaterialId red = add_material(scene, DiffuseMaterial{ColorParam{Color(0.8f, 0.1f, 0.1f)}});
+  const MaterialId metal = add_material(scene, MetallicRoughnessMaterial{});
+  const MaterialId mix = add_material(scene, MixMaterial{red, metal, FloatParam{0.3f}});
+  place(scene, smooth_sphere({-1, 0, -5}, 1, 6), add_material(scene, MixMaterial{mix, add_material(scene, PhongMaterial{}), 0.5f}));
+  place_sphere(scene, {1, 0, -5}, 1, mix);
+  place(scene, box_mesh({-3, -1, -4}, {3, -0.7f, -2}), add_material(scene, InterfaceMaterial{}));
+  scene.environment = Environment{};
+  Camera camera = camera_at(Vec3(0), {0, 0, -1}, 0.7f);
+  camera.lens_radius = 0.1f, camera.focal_distance = 4;
+  scene.cameras = {camera};
+  return scene;
+}
+
 TEST(EyePaths, FirstHitsAreTheReferences) {
-  for (const char* name : {"spheres", "glass", "cornell"}) {
+  for (const char* name : {"spheres", "glass", "cornell", "mixed"}) {
     SCOPED_TRACE(name);
-    const Shot shot = shot_of(builtin_scene(name), {45, 37});
+    const Shot shot = shot_of(name == std::string("mixed") ? mixed_scene() : builtin_scene(name), {45, 37});
     Exposure exposure;
     exposure.spp = 4, exposure.seed = 7, exposure.max_bounces = 0, exposure.filter = PixelFilter::Kind::gaussian;
     exposure.aovs = first_hit_layers();
@@ -194,6 +210,32 @@ TEST(EyePaths, InterfacesAreNotSeenButAbsorb) {
     const float side = 2 * 5 * std::tan(0.45f) / 64;
     EXPECT_NEAR(seen.eye.area, side * side, 1e-3f * side * side);
   }
+}
+
+TEST(EyePaths, MirrorsThatTurnRaysBelowTheirSurfaceShowNothing) {
+  for (const float tilt : {0.5f, 1.f}) {
+    Scene scene;
+    place(scene, square({0, 0, -9}, {0, 0, 1}, 50));
+    place(scene, square({0, 0, 9}, {0, 0, -1}, 50));
+    Mesh mirror = square({0, 0, -2}, {0, 0, 1}, 5);
+    mirror.normals = std::vector<Vec3>(4, Vec3{std::sin(tilt), 0, std::cos(tilt)});
+    place(scene, mirror, add_material(scene, ConductorMaterial{}));
+    const Taken taken = take(*build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.05f), {});
+    // 2 * 1 rad is more than a right angle.
+    EXPECT_EQ(taken.seen.size(), tilt > 0.8f ? 0u : 64u * 64);
+    for (const Seen& seen : taken.seen) EXPECT_NEAR(seen.eye.position.z, 9, 1e-4f);
+  }
+}
+
+TEST(EyePaths, WhatRefractionDoesToRadianceIsNoLoss) {
+  Scene scene;
+  place(scene, square({0, 0, -3}, {0, 0, 1}, 4));
+  place(scene, box_mesh({-9, -9, -9}, {9, 9, -1}), add_material(scene, DielectricMaterial{}));
+  Take how;
+  how.options.least_weight = 0.5f;
+  const Taken taken = take(*build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.1f), how);
+  ASSERT_EQ(taken.seen.size(), 64u * 64);
+  for (const Seen& seen : taken.seen) EXPECT_NEAR(seen.eye.weight.x, 0.96f / 2.25f, 1e-3f);
 }
 
 // Glass, absorbing too, mirrors, a coat and emitters under a sky: what shines is seen only along deltas.
