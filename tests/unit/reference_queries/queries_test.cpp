@@ -65,11 +65,13 @@ struct Take {
   int spp = 2, light_samples = 1, max_bounces = 2, threads = 2;
   std::vector<std::string> settings{};
   std::vector<SampleRange> parts{};  ///< none: all at once
+  std::uint64_t seed = 0;
 };
 
 Picture take(const Shot& shot, const Take& how, Visibility* visibility) {
   Context context;
   context.threads = how.threads;
+  context.seed = how.seed;
   const View view(shot.camera, shot.size_px, PixelFilter());
   const Method& method = find_method("reference");
   RenderJob job;
@@ -221,6 +223,26 @@ TEST(ReferenceQueries, RouletteThatLearnsDependsNeitherOnThreadsNorOnHowSamplesA
   // Before it has learnt anything it is exact.
   const auto third = make("nee++", shot, quick);
   EXPECT_TRUE(same_sums(take(shot, {.spp = 1}, third.get()).frame, take(shot, {.spp = 1}, exact.get()).frame));
+}
+
+TEST(ReferenceQueries, RouletteKeepsTheMeanOfThePicture) {
+  constexpr int kSeeds = 100;
+  const Shot shot = shot_of(with_many_lights(), {12, 12});
+  const auto exact = make("exact", shot);
+  double sum = 0, squares = 0, truth = 0;
+  std::uint64_t saved = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Take how{.spp = 4, .light_samples = 2, .seed = static_cast<std::uint64_t>(seed)};
+    const auto roulette = make("nee++", shot, {"resolution=3", "directions=2", "min_tests=8"});
+    const Picture played = take(shot, how, roulette.get()), same_seed = take(shot, how, exact.get());
+    const double difference = played.frame.mean_luminance() - same_seed.frame.mean_luminance();
+    sum += difference, squares += difference * difference, truth += same_seed.frame.mean_luminance();
+    saved += played.statistics.visibility.cached;
+  }
+  EXPECT_GT(saved, 1000u * kSeeds / 10);
+  const double mean = sum / kSeeds, error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+  EXPECT_NEAR(mean, 0, 3 * error);
+  EXPECT_LT(error, 0.01 * truth / kSeeds) << "too noisy to tell";
 }
 
 TEST(ReferenceQueries, ShadowMapsAnswerPointAndDirectionalLights) {
