@@ -127,7 +127,7 @@ struct WordKeys {
 
 /// What a slot says of a key.
 struct AnswerV {
-  MU known, mixed;
+  MU same_key, known, mixed;
   VU visible;  ///< 0 or 1
 };
 
@@ -143,13 +143,15 @@ struct Format {
   HWY_INLINE AnswerV read(VU slot, VU tag_value) const {
     const VU rest = hn::Xor(slot, tag_value);
     if constexpr (!kCounters) {
-      return {hn::Lt(rest, hn::Set(d, 2u)), hn::Ne(rest, rest), rest};
+      const MU same = hn::Lt(rest, hn::Set(d, 2u));
+      return {same, same, hn::Ne(rest, rest), rest};
     } else {
       const VU seven = hn::Set(d, 7u), zero = hn::Zero(d);
       const VU seen = hn::And(hn::ShiftRight<3>(rest), seven), hidden = hn::And(rest, seven);
       const MU mixed = hn::And(hn::Ne(seen, zero), hn::Ne(hidden, zero));
       const MU enough = hn::Or(mixed, hn::Lt(almost, hn::Add(seen, hidden)));
-      return {hn::And(hn::Lt(rest, hn::Set(d, 64u)), enough), mixed, hn::IfThenElse(hn::Lt(seen, hidden), zero, hn::Set(d, 1u))};
+      const MU same = hn::Lt(rest, hn::Set(d, 64u));
+      return {same, hn::And(same, enough), mixed, hn::IfThenElse(hn::Lt(seen, hidden), zero, hn::Set(d, 1u))};
     }
   }
   /// Lanes where a neighbour holds a ray that answered otherwise.
@@ -217,7 +219,7 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
     lookups += hits * neighbours;
     answered += hits;
     if (!hn::AllTrue(d, done)) {
-      rejected += hn::CountTrue(d, hn::And(miss, hn::Ne(slot, hn::Zero(d))));
+      rejected += hn::CountTrue(d, hn::AndNot(answer.same_key, hn::And(miss, hn::Ne(slot, hn::Zero(d)))));
       if (!hn::AllFalse(d, miss)) {
         hn::CompressStore(id, miss, d, out.miss_id.data() + misses);
         hn::CompressStore(keys.own.index, miss, d, out.miss_index.data() + misses);
