@@ -169,15 +169,9 @@ std::vector<ParticleVertex> trace_particles(const World& world, const ParticleOp
 
 std::size_t particles_for(std::size_t wanted, std::size_t most, const World& world, const ParticleOptions& options, const Context& context,
                           RayCounts& rays) {
-  if (wanted == 0) return 0;
-  std::size_t tried = 0, vertices = 0;
-  for (std::size_t round = kBatch; tried < most && vertices < kBatch; round = tried) {
-    vertices += trace_particles(world, options, static_cast<std::uint32_t>(tried), round, context, rays).size();
-    tried += round;
-  }
-  if (vertices == 0) return most;
-  const double a_particle = static_cast<double>(vertices) / static_cast<double>(tried);
-  return static_cast<std::size_t>(std::clamp(std::ceil(static_cast<double>(wanted) / a_particle), 1.0, static_cast<double>(most)));
+  return samples_for(wanted, most, [&](std::size_t first, std::size_t count) {
+    return trace_particles(world, options, static_cast<std::uint32_t>(first), count, context, rays).size();
+  });
 }
 
 }  // namespace sightline::vpl

@@ -1,6 +1,8 @@
 // Particles that leave the lights, and the surfaces that they meet.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +33,23 @@ struct ParticleOptions {
 std::vector<ParticleVertex> trace_particles(const World& world, const ParticleOptions& options, std::uint32_t first, std::size_t count,
                                             const Context& context, RayCounts& rays);
 
-/// How many particles leave about `wanted` vertices, at most `most`. Decided by particles of their own: a count that heeded the particles
-/// that are kept would be biased.
+/// How many samples give about `wanted` results, at most `most`, where `found(first, count)` says how many results samples [first,
+/// first + count) give. Those samples must not be used again: a count that heeded the samples that are kept would be biased.
+template <class Found>
+std::size_t samples_for(std::size_t wanted, std::size_t most, Found&& found) {
+  constexpr std::size_t kEnough = 256;
+  if (wanted == 0) return 0;
+  std::size_t tried = 0, results = 0;
+  for (std::size_t round = kEnough; tried < most && results < kEnough; round = tried) {
+    results += found(tried, round);
+    tried += round;
+  }
+  if (results == 0) return most;
+  const double count = std::ceil(static_cast<double>(wanted) * static_cast<double>(tried) / static_cast<double>(results));
+  return static_cast<std::size_t>(std::min(std::max(count, 1.0), static_cast<double>(most)));
+}
+
+/// How many particles leave about `wanted` vertices, at most `most`.
 std::size_t particles_for(std::size_t wanted, std::size_t most, const World& world, const ParticleOptions& options, const Context& context,
                           RayCounts& rays);
 

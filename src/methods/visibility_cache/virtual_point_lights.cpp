@@ -16,9 +16,9 @@ using vpl::Candidate;
 
 constexpr std::uint32_t kKey = 0x56504c73u;  // light paths of their own, whatever pixels draw
 constexpr std::size_t kNeighbours = 8;
-constexpr std::size_t kMostParticles = 32;  // for each vertex that is wanted: where light hardly gets in
+constexpr std::size_t kMostTries = 32;  // for each candidate that is wanted: where light hardly gets in
 
-enum Stream : std::uint32_t { kJudges, kPilot, kParticles, kBounces, kChoice };
+enum Stream : std::uint32_t { kJudges, kParticleTrial, kParticles, kBounceTrial, kBounces, kChoice };
 
 /// A candidate that was chosen, and how often over how often was expected.
 struct Survivor {
@@ -58,12 +58,15 @@ void sort_in_space(const Bounds& bounds, std::vector<Candidate>& candidates) {
 /// Of candidates with their importances `count` by systematic resampling [Segovia2006]; all where there are no more than that.
 std::vector<Survivor> resample(std::span<const Candidate> candidates, std::size_t count, float u) {
   std::vector<Survivor> survivors;
-  double sum = 0;
-  for (const Candidate& candidate : candidates) sum += static_cast<double>(candidate.importance);
-  // What the judges do not see may still light what others see.
-  const double least = 0.01 * sum / static_cast<double>(candidates.size());
+  double sum = 0, power = 0;
+  for (const Candidate& candidate : candidates)
+    sum += static_cast<double>(candidate.importance), power += static_cast<double>(candidate.power());
+  // What the judges do not see may still light what others see. Deviation: besides a constant, a share goes by power, so that no light
+  // can be brighter than all of them together divided by that share of the count.
+  const double least = 0.01 * sum / static_cast<double>(candidates.size()), of_power = power > 0 ? 0.05 * sum / power : 0;
   const auto weight = [&](const Candidate& c) {
-    return sum > 0 ? static_cast<double>(c.importance) + least : static_cast<double>(luminance(c.beta));
+    if (!(sum > 0)) return static_cast<double>(c.power());
+    return static_cast<double>(c.importance) + least + of_power * static_cast<double>(c.power());
   };
   double total = 0;
   for (const Candidate& candidate : candidates) total += weight(candidate);
@@ -134,11 +137,13 @@ VirtualPointLights make_virtual_point_lights(const World& world, const View& vie
     const std::size_t total = wanted * static_cast<std::size_t>(std::max(options.candidates, 1));
     const float share = std::clamp(options.backward_share, 0.f, 1.f);
     vpl::CandidateCounts counts;
-    if (!judges.empty())
-      counts.from_judges = static_cast<std::size_t>(std::lround(static_cast<double>(total) * static_cast<double>(share)));
-    const std::size_t vertices = total - counts.from_judges;
-    const vpl::ParticleOptions pilot{options.max_bounces, stream(kPilot)}, particles{options.max_bounces, stream(kParticles)};
-    counts.particles = vpl::particles_for(vertices, vertices * kMostParticles, world, pilot, context, rays);
+    const auto backward_wanted =
+        judges.empty() ? std::size_t{0} : static_cast<std::size_t>(std::lround(static_cast<double>(total) * static_cast<double>(share)));
+    counts.from_judges =
+        vpl::samples_from_judges_for(backward_wanted, backward_wanted * kMostTries, world, judges, stream(kBounceTrial), context, rays);
+    const std::size_t vertices = total - backward_wanted;
+    const vpl::ParticleOptions trial{options.max_bounces, stream(kParticleTrial)}, particles{options.max_bounces, stream(kParticles)};
+    counts.particles = vpl::particles_for(vertices, vertices * kMostTries, world, trial, context, rays);
 
     candidates = vpl::candidates_of(vpl::trace_particles(world, particles, options.pass * static_cast<std::uint32_t>(counts.particles),
                                                          counts.particles, context, rays),

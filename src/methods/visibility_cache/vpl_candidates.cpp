@@ -245,6 +245,14 @@ std::vector<Candidate> candidates_from_judges(const World& world, std::span<cons
   return candidates;
 }
 
+std::size_t samples_from_judges_for(std::size_t wanted, std::size_t most, const World& world, std::span<const Judge> judges,
+                                    std::uint32_t key, const Context& context, RayCounts& rays) {
+  if (judges.empty()) return 0;
+  return samples_for(wanted, most, [&](std::size_t first, std::size_t count) {
+    return candidates_from_judges(world, judges, key, static_cast<std::uint32_t>(first), count, context, rays).size();
+  });
+}
+
 void weigh(const World& world, std::span<const Judge> judges, std::size_t judge_count, const CandidateCounts& counts,
            float max_geometry_term, std::span<Candidate> candidates, const Context& context, RayCounts& rays) {
   const std::size_t grain = std::max<std::size_t>(1, kRayBatch / std::max<std::size_t>(1, judges.size()));

@@ -1,6 +1,7 @@
 // Candidates for virtual point lights, from the lights and from the eye, and what each is worth to the picture.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,8 @@ struct Candidate {
 
   /// Radiance sent towards unit `w`: what arrives from a distance r is that times cos / r².
   Color sent(const Vec3& w) const { return scattered(surface, w, wi) * beta; }
+  /// Luminance of the power that it sends out.
+  float power() const { return luminance(beta * surface.bsdf.albedo()) * std::fabs(glm::dot(normal, wi)); }
   bool is_lambert() const { return surface.bsdf.lambert() != nullptr; }
 };
 
@@ -41,6 +44,10 @@ std::vector<Candidate> candidates_of(std::span<const ParticleVertex> vertices, s
 /// that arrives, still to be divided by the density.
 std::vector<Candidate> candidates_from_judges(const World& world, std::span<const Judge> judges, std::uint32_t key, std::uint32_t first,
                                               std::size_t count, const Context& context, RayCounts& rays);
+
+/// How many samples from the judges leave about `wanted` candidates, at most `most`; decided by samples of their own.
+std::size_t samples_from_judges_for(std::size_t wanted, std::size_t most, const World& world, std::span<const Judge> judges,
+                                    std::uint32_t key, const Context& context, RayCounts& rays);
 
 /// Traces the rays between judges and candidates; weights the first bounces of either technique by the densities of both, and finds the
 /// importance of all. `judge_count`: camera rays that were sent out to find judges. `max_geometry_term` clamps cos cos / r².

@@ -5,6 +5,7 @@
 
 #include "base/sample/sobol.h"
 #include "base/sample/warp.h"
+#include "methods/visibility_cache/surface_point.h"
 #include "scene/builtin/parts.h"
 
 namespace sightline::test {
@@ -93,25 +94,63 @@ Room make_closed_box(float reflectance, const Color& radiance, float light_size)
   return finish("closed", std::move(scene), {0.8f, 0.3f, 0.8f}, {-0.5f, -0.3f, -0.5f}, 100);
 }
 
-Room make_slit_rooms() {
+Room make_slit_room() {
   Scene scene;
   add_walls(scene, true, 0);
-  add_window_wall(scene, 0.06f);
-  // The far room, of edge 4, on the other side of the window's wall.
-  const Color grey(0.7f);
-  add_wall(scene, {1, -2, 2}, {4, 0, 0}, {0, 0, -4}, grey);
-  add_wall(scene, {1, 2, -2}, {4, 0, 0}, {0, 0, 4}, grey);
-  add_wall(scene, {1, -2, -2}, {4, 0, 0}, {0, 4, 0}, grey);
-  add_wall(scene, {5, -2, 2}, {-4, 0, 0}, {0, 4, 0}, grey);
-  add_wall(scene, {5, -2, -2}, {0, 0, 4}, {0, 4, 0}, grey);
-  builtin::add_mesh(scene, MeshBuilder().quad({4.5f, -1, -1}, {0, 0, 2}, {0, 2, 0}).build("light"),
-                    builtin::add_emitter(scene, "light", Color(40)));
+  add_window_wall(scene, 0.1f);
+  add_wall(scene, {-20, -1.1f, 20}, {40, 0, 0}, {0, 0, -40}, Color(0.5f));
+  scene.lights.push_back(
+      {.name = "sun", .shape = DirectionalLight{normalize_or(Vec3(-1, -0.5f, 0.2f), Vec3(0)), Color(5, 4, 3)}, .node = {}});
   return finish("slit", std::move(scene), {0.8f, 0.3f, 0.8f}, {-0.5f, -0.3f, -0.5f}, 100);
+}
+
+Room make_room_of(const SurfaceModel& model) {
+  Scene scene;
+  add_walls(scene, true, 0);
+  add_wall(scene, {1, -1, -1}, {0, 0, 2}, {0, 2, 0}, Color(0.3f));
+  const MaterialId material = builtin::add_material(scene, "model", model);
+  builtin::add_sphere(scene, "ball", {-0.4f, -0.5f, -0.3f}, 0.4f, material);
+  // A sheet whose vertex normals lean outward.
+  Mesh sheet = MeshBuilder().quad({0.3f, -0.8f, 0.5f}, {0.5f, 0, -0.5f}, {0, 1, 0}).build("sheet");
+  const Vec3 n = normalize_or(Vec3(1, 0, 1), Vec3(0)), t = normalize_or(Vec3(1, 0, -1), Vec3(0));
+  std::vector<Vec3> normals;
+  for (const Vec3& p : sheet.positions.span()) normals.push_back(normalize_or(n + 0.5f * (p.y > 0 ? 1.f : -1.f) * t, n));
+  sheet.normals = SharedArray<Vec3>(normals);
+  builtin::add_mesh(scene, std::move(sheet), material);
+  scene.lights.push_back({.name = "point", .shape = PointLight{{0.1f, 0.6f, 0.2f}, Color(1, 2, 3)}, .node = {}});
+  return finish("room of", std::move(scene), {0.9f, 0.7f, 0.9f}, {-0.5f, -0.4f, -0.5f}, 90);
+}
+
+Room make_mirror_room(bool mirror) {
+  Scene scene;
+  const Vec3 lamp(0.2f, -0.3f, 0.1f);
+  const float x = -1;
+  // The ceiling alone reflects.
+  const MaterialId black = builtin::add_diffuse(scene, "black", Color(0));
+  add_wall(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, Color(0.8f, 0.6f, 0.4f));
+  builtin::add_mesh(scene, MeshBuilder().quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}).build("floor"), black);
+  // Image of the lamp and a hole in place of the mirror, in a wall that is otherwise black: the same light on the ceiling.
+  const float h = 0.5f;
+  MeshBuilder around;
+  around.quad({x, -1, -1}, {0, 0, 2}, {0, 1 - h, 0}).quad({x, h, -1}, {0, 0, 2}, {0, 1 - h, 0});
+  around.quad({x, -h, -1}, {0, 0, 1 - h}, {0, 2 * h, 0}).quad({x, -h, h}, {0, 0, 1 - h}, {0, 2 * h, 0});
+  builtin::add_mesh(scene, around.build("wall"), black);
+  scene.lights.push_back({.name = "lamp", .shape = PointLight{lamp, Color(1)}, .node = {}});
+  if (mirror) {
+    MetallicRoughnessMaterial perfect;
+    perfect.roughness = FloatParam{0.f};
+    builtin::add_mesh(scene, MeshBuilder().quad({x, -h, h}, {0, 0, -2 * h}, {0, 2 * h, 0}).build("mirror"),
+                      builtin::add_material(scene, "mirror", perfect));
+  } else {
+    scene.lights.push_back({.name = "image", .shape = PointLight{{2 * x - lamp.x, lamp.y, lamp.z}, Color(1)}, .node = {}});
+  }
+  return finish("mirror", std::move(scene), {0.8f, 0.3f, 0.8f}, {-0.5f, 0.3f, -0.5f}, 100);
 }
 
 std::vector<Receiver> receivers() { return {{{0.2f, -1, 0.3f}, {0, 1, 0}}, {{0.1f, 0.2f, -1}, {0, 0, 1}}, {{-1, 0.1f, 0.2f}, {1, 0, 0}}}; }
 
 Mean path_traced_irradiance(const World& world, const Receiver& receiver, int max_bounces, int paths, std::uint32_t seed) {
+  const vpl::SurfaceReader reader(world);
   RayBatch rays, shadow;
   HitBatch hits;
   SurfaceBatch surfaces;
@@ -134,21 +173,29 @@ Mean path_traced_irradiance(const World& world, const Receiver& receiver, int ma
       direct[i] = Color(0);
       shadow.set(i, {Vec3(0), 0, Vec3(0, 0, 1), -1});
       const Vec3 arrived = load(rays.direction, i);
-      rays.set(i, {Vec3(0), 0, Vec3(0, 0, 1), -1});
-      if (!hits.hit(i)) continue;
+      if (!hits.hit(i)) {
+        rays.set(i, {Vec3(0), 0, Vec3(0, 0, 1), -1});
+        continue;
+      }
       const Vec3 position = load(surfaces.position, i), winding = load(surfaces.geometric_normal, i);
       const Vec3 normal = glm::dot(winding, arrived) > 0 ? -winding : winding;
-      throughput[i] *= load(surfaces.albedo, i);
       const LightSample light = world.lights().sample(position, normal, random(i, 4 * bounce + 1).x, random(i, 4 * bounce + 2));
       const float cosine = glm::dot(normal, light.wi);
       const Vec3 origin = offset_origin(position, normal, surfaces.error[i], normal);
-      if (light.pdf > 0 && cosine > 0) {
-        direct[i] = throughput[i] * light.radiance * (cosine * kInvPi / light.pdf);
-        if (std::isinf(light.distance))
-          shadow.set(i, {origin, 0, light.wi, kInfinity});
+      const bool passes = cosine < 0 && !surfaces.plain[i];
+      if (light.pdf > 0 && (cosine > 0 || passes)) {
+        direct[i] = throughput[i] * light.radiance / light.pdf;
+        if (surfaces.plain[i])
+          direct[i] *= load(surfaces.albedo, i) * (cosine * kInvPi);
         else
-          shadow.set(i, {origin, 0, offset_origin(light.point, light.normal, light.point_error, -light.wi) - origin, 1});
+          direct[i] *= vpl::scattered(reader.read(rays, hits, surfaces, i, 0, 0), -arrived, light.wi);
+        const Vec3 start = passes ? offset_origin(position, normal, surfaces.error[i], -normal) : origin;
+        if (std::isinf(light.distance))
+          shadow.set(i, {start, 0, light.wi, kInfinity});
+        else
+          shadow.set(i, {start, 0, offset_origin(light.point, light.normal, light.point_error, -light.wi) - start, 1});
       }
+      throughput[i] *= load(surfaces.albedo, i);
       rays.set(i, {origin, 0, frame_from_normal(normal).to_world(sample_cosine_hemisphere(random(i, 4 * bounce + 3))), kInfinity});
     }
     world.tracer().occluded(shadow, occluded, BatchKind::shadow_diffuse, counts);

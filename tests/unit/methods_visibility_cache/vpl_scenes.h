@@ -22,8 +22,12 @@ enum class RoomLight { area, point, directional, environment };
 Room make_room(RoomLight light);
 /// The block is gone, the walls are white, the light hangs from the ceiling; nothing leaves.
 Room make_closed_box(float reflectance, const Color& radiance, float light_size);
-/// Two rooms, one behind the other; a strong light in the far one, and a slit between them. The camera sees the near one.
-Room make_slit_rooms();
+/// A closed box with a ball and a sheet of the given material, whose normals are not those of the sheet; a point light.
+Room make_room_of(const SurfaceModel& model);
+/// A lamp shines on a ceiling, also by way of a mirror; or the mirror is a hole and the lamp's image stands behind it.
+Room make_mirror_room(bool mirror);
+/// The box with a slit in a wall, on wide ground in the sun: hardly any light gets in.
+Room make_slit_room();
 
 struct Receiver {
   Vec3 position, normal;
@@ -35,6 +39,7 @@ struct Mean {
   Color value{0}, error{0};
 };
 /// Irradiance by light that was reflected once up to `max_bounces` times, by paths from the receiver with a light sample at each surface.
+/// Surfaces are Lambert where max_bounces is above 1.
 Mean path_traced_irradiance(const World& world, const Receiver& receiver, int max_bounces, int paths, std::uint32_t seed);
 /// The same by virtual point lights with exact visibility.
 Color virtual_irradiance(const World& world, const Receiver& receiver, const VirtualPointLights& lights);

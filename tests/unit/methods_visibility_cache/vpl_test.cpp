@@ -42,17 +42,17 @@ std::vector<Mean> path_traced(const Room& room, const std::vector<Receiver>& at,
   return means;
 }
 
-constexpr int kSeeds = 256;
+constexpr int kSeeds = 64;
 constexpr RoomLight kLights[] = {RoomLight::area, RoomLight::point, RoomLight::directional, RoomLight::environment};
 
 TEST(VirtualPointLights, OneBounceAgreesWithPathTracingWhicheverWayTheyAreMade) {
   const std::vector<Receiver> at = receivers();
   for (const RoomLight light : kLights) {
     const Room room = make_room(light);
-    const std::vector<Mean> truth = path_traced(room, at, 1, 1 << 17);
+    const std::vector<Mean> truth = path_traced(room, at, 1, 1 << 16);
     for (const float share : {0.f, 0.5f, 1.f}) {
-      const VirtualPointLightOptions options{.count = 64, .candidates = 8, .backward_share = share, .clamp_distance = 0, .max_bounces = 1};
-      expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.04, room.name + ", share " + std::to_string(share));
+      const VirtualPointLightOptions options{.count = 64, .candidates = 4, .backward_share = share, .clamp_distance = 0, .max_bounces = 1};
+      expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.07, room.name + ", share " + std::to_string(share));
     }
   }
 }
@@ -61,12 +61,58 @@ TEST(VirtualPointLights, ManyBouncesAgreeWithPathTracing) {
   const std::vector<Receiver> at = receivers();
   for (const RoomLight light : {RoomLight::area, RoomLight::environment}) {
     const Room room = make_room(light);
-    const std::vector<Mean> truth = path_traced(room, at, 3, 1 << 17);
+    const std::vector<Mean> truth = path_traced(room, at, 3, 1 << 16);
     for (const float share : {0.f, 0.5f}) {
-      const VirtualPointLightOptions options{.count = 64, .candidates = 8, .backward_share = share, .clamp_distance = 0, .max_bounces = 3};
-      expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.04, room.name + ", share " + std::to_string(share));
+      const VirtualPointLightOptions options{.count = 64, .candidates = 4, .backward_share = share, .clamp_distance = 0, .max_bounces = 3};
+      expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.07, room.name + ", share " + std::to_string(share));
     }
   }
+}
+
+TEST(VirtualPointLights, OneBounceAgreesWithPathTracingForAllReflectances) {
+  const std::vector<Receiver> at = receivers();
+  ConductorMaterial rough_metal;
+  rough_metal.alpha_u = rough_metal.alpha_v = FloatParam{0.8f};
+  DielectricMaterial frosted;
+  frosted.alpha_u = frosted.alpha_v = FloatParam{0.7f};
+  const std::pair<std::string, SurfaceModel> models[] = {{"diffuse", DiffuseMaterial{.reflectance = Color(0.9f)}},
+                                                         {"metal", rough_metal},
+                                                         {"paper", DiffuseTransmissionMaterial{Color(0.2f), Color(0.7f)}},
+                                                         {"coated", CoatedDiffuseMaterial{}},
+                                                         {"frosted glass", frosted}};
+  for (const auto& [name, model] : models) {
+    const Room room = make_room_of(model);
+    const std::vector<Mean> truth = path_traced(room, at, 1, 1 << 16);
+    for (const float share : {0.f, 0.5f}) {
+      const VirtualPointLightOptions options{.count = 64, .candidates = 4, .backward_share = share, .clamp_distance = 0, .max_bounces = 1};
+      expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.08, name + ", share " + std::to_string(share));
+    }
+  }
+}
+
+TEST(VirtualPointLights, ParticlesGoByWayOfMirrors) {
+  const std::vector<Receiver> at{receivers()[0]};
+  const std::vector<Mean> truth = path_traced(make_mirror_room(false), at, 1, 1 << 16);
+  const Room mirror = make_mirror_room(true);
+  const VirtualPointLightOptions options{.count = 64, .candidates = 4, .clamp_distance = 0, .max_bounces = 2};
+  expect_same(mean_virtual_irradiance(mirror, at, options, kSeeds), truth, 3, 0.02, "mirror");
+  VirtualPointLightOptions once = options;
+  once.max_bounces = 1;
+  const float less = luminance(mean_virtual_irradiance(mirror, at, once, kSeeds)[0].value);
+  EXPECT_LT(less, 0.95f * luminance(truth[0].value));
+}
+
+TEST(VirtualPointLights, ComeFromTheEyeWhereParticlesHardlyGetIn) {
+  const std::vector<Receiver> at{receivers()[2]};
+  const Room room = make_slit_room();
+  const std::vector<Mean> truth = path_traced(room, at, 1, 1 << 18);
+  VirtualPointLightOptions options{.count = 32, .candidates = 4, .clamp_distance = 0, .max_bounces = 1};
+  const std::vector<Mean> both = mean_virtual_irradiance(room, at, options, kSeeds);
+  expect_same(both, truth, 3, 0.15, "slit");
+  // Particles alone find next to nothing.
+  options.backward_share = 0;
+  const std::vector<Mean> particles = mean_virtual_irradiance(room, at, options, kSeeds);
+  EXPECT_LT(luminance(particles[0].value), 0.5f * luminance(truth[0].value));
 }
 
 TEST(VirtualPointLights, CarryThePowerOfTheLight) {
@@ -95,7 +141,7 @@ TEST(VirtualPointLights, CarryThePowerOfTheLight) {
     const double mean = sum / kSeeds, error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
     double expected = 0;
     for (int b = 0; b < bounces; ++b) expected += std::pow(static_cast<double>(kReflectance), b) * static_cast<double>(power.x);
-    EXPECT_LT(error, 0.03 * expected);
+    EXPECT_LT(error, 0.05 * expected);
     EXPECT_NEAR(mean, expected, 3 * error) << bounces;
   }
 }
@@ -106,7 +152,7 @@ TEST(VirtualPointLights, ResamplingKeepsTheMean) {
   VirtualPointLightOptions few{.count = 24, .candidates = 16, .clamp_distance = 0, .max_bounces = 2};
   VirtualPointLightOptions all = few;
   all.count = few.count * few.candidates * 4, all.candidates = 1;
-  expect_same(mean_virtual_irradiance(room, at, few, 128), mean_virtual_irradiance(room, at, all, 32), 3, 0.04, "resampled");
+  expect_same(mean_virtual_irradiance(room, at, few, 96), mean_virtual_irradiance(room, at, all, 12), 3, 0.05, "resampled");
 }
 
 TEST(VirtualPointLights, DoNotDependOnThreads) {
