@@ -179,6 +179,30 @@ TEST(EyePaths, DepthIsLimited) {
   }
 }
 
+// As in the reference, the last ray adds what shines and nothing else.
+TEST(EyePaths, TheLastMirrorStillShowsLamps) {
+  Scene scene;
+  const MaterialId mirror = add_material(scene, ConductorMaterial{});
+  place(scene, square({0, 0, -2}, {0, 0, 1}, 5), mirror);
+  place(scene, square({0, 0, 4}, {0, 0, -1}, 50), add_material(scene, DiffuseMaterial{ColorParam{0.f}}, Color(3)));
+  const Shot shot{build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.4f), {8, 8}};
+  for (const int depth : {-1, 0, 1}) {
+    Take how;
+    how.size_px = shot.size_px, how.options.max_depth = depth;
+    const Taken taken = take(*shot.world, shot.camera, how);
+    EXPECT_EQ(taken.seen.size(), depth > 0 ? 64u : 0u);
+    Exposure exposure;
+    exposure.spp = 1, exposure.max_bounces = depth;
+    if (depth < 0) {
+      EXPECT_EQ(taken.emitted[9], Color(0));
+      continue;
+    }
+    const Picture reference = expose(shot, exposure);
+    for (std::uint32_t pixel = 0; pixel < 64; ++pixel) EXPECT_LT(glm::length(taken.emitted[pixel] - reference.frame.color(pixel)), 1e-5f);
+    EXPECT_GT(taken.emitted[9].x, 1);
+  }
+}
+
 TEST(EyePaths, CoatsGiveASampleAndAMirror) {
   const auto world = build(pane_scene(CoatedDiffuseMaterial{}));
   const Taken taken = take(*world, camera_at(Vec3(0), {0, 0, -1}, 0.9f), {});
