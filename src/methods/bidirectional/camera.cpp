@@ -1,11 +1,17 @@
 #include "methods/bidirectional/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/sample/warp.h"
 
 namespace sightline::bidirectional {
+namespace {
+
+constexpr std::size_t kGuideSteps = 512;
+
+}  // namespace
 
 CameraImportance::CameraImportance(const View& view)
     : width_(view.width()),
@@ -22,8 +28,13 @@ CameraImportance::CameraImportance(const View& view)
     view_direction_ = rays.position;
     determinant_ = std::fabs(glm::dot(Vec3d(view_direction_), glm::cross(Vec3d(plane_.x), Vec3d(plane_.y))));
   }
-  if (view.filter().kind() != PixelFilter::Kind::centre)
-    filter_.assign(view.filter().table(), view.filter().table() + PixelFilter::kEntries + 1);
+  if (view.filter().kind() == PixelFilter::Kind::centre) return;
+  filter_.assign(view.filter().table(), view.filter().table() + PixelFilter::kEntries + 1);
+  for (std::size_t step = 0; step < kGuideSteps; ++step) {
+    const float offset = filter_.front() + (filter_.back() - filter_.front()) * static_cast<float>(step) / kGuideSteps;
+    const auto above = std::upper_bound(filter_.begin(), filter_.end(), offset);
+    filter_guide_.push_back(static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, above - filter_.begin() - 1)));
+  }
 }
 
 Vec3 CameraImportance::lens_point(const Vec2& u) const {
@@ -83,25 +94,34 @@ std::optional<CameraImportance::Projection> CameraImportance::project(const Vec3
 }
 
 float CameraImportance::filter_density(float offset) const {
-  const auto above = std::upper_bound(filter_.begin(), filter_.end(), offset);
-  if (above == filter_.begin() || above == filter_.end()) return 0;
-  const float width = *above - *(above - 1);
+  if (!(offset >= filter_.front() && offset < filter_.back())) return 0;
+  const float share = (offset - filter_.front()) / (filter_.back() - filter_.front());
+  std::size_t bin = filter_guide_[std::min(kGuideSteps - 1, static_cast<std::size_t>(share * kGuideSteps))];
+  while (bin > 0 && filter_[bin] > offset) --bin;
+  while (bin + 2 < filter_.size() && filter_[bin + 1] <= offset) ++bin;
+  const float width = filter_[bin + 1] - filter_[bin];
   return width > 0 ? 1 / (static_cast<float>(filter_.size() - 1) * width) : 0.f;
 }
 
 int CameraImportance::shares(const Vec2& film, Share* out) const {
   if (filter_.empty()) return 0;
-  const float reach = filter_.back();
   constexpr int kSide = 4;
   static_assert(kSide * kSide <= kMaxShares);
+  // The filter is a product: columns and rows by themselves.
+  const float reach = filter_.back();
   const int x0 = static_cast<int>(std::ceil(film.x - 0.5f - reach)), y0 = static_cast<int>(std::ceil(film.y - 0.5f - reach));
+  std::array<float, kSide> columns;
+  for (int x = 0; x < kSide; ++x) {
+    const bool inside = x0 + x >= 0 && x0 + x < width_;
+    columns[static_cast<std::size_t>(x)] = inside ? filter_density(film.x - 0.5f - static_cast<float>(x0 + x)) : 0.f;
+  }
   int count = 0;
   for (int y = std::max(0, y0); y < std::min(height_, y0 + kSide); ++y) {
     const float row = filter_density(film.y - 0.5f - static_cast<float>(y));
     if (!(row > 0)) continue;
-    for (int x = std::max(0, x0); x < std::min(width_, x0 + kSide); ++x) {
-      const float weight = row * filter_density(film.x - 0.5f - static_cast<float>(x));
-      if (weight > 0) out[count++] = {static_cast<std::uint32_t>(y * width_ + x), weight};
+    for (int x = 0; x < kSide; ++x) {
+      const float weight = row * columns[static_cast<std::size_t>(x)];
+      if (weight > 0) out[count++] = {static_cast<std::uint32_t>(y * width_ + x0 + x), weight};
     }
   }
   return count;

@@ -53,10 +53,12 @@ class CameraImportance {
   bool orthographic_;
   float lens_radius_, focal_distance_;
   Vec3 position_, axis_x_, axis_y_;
-  Plane plane_;                ///< at depth 1; of the rays' origins for orthographic cameras
-  Vec3 view_direction_{0};     ///< orthographic
-  double determinant_ = 1;     ///< orthographic: area of a pixel across the beam
-  std::vector<float> filter_;  ///< offsets between which lies the same part of a pixel's samples; empty if all are at the centre
+  Plane plane_;             ///< at depth 1; of the rays' origins for orthographic cameras
+  Vec3 view_direction_{0};  ///< orthographic
+  double determinant_ = 1;  ///< orthographic: area of a pixel across the beam
+  /// Offsets between which lies the same part of a pixel's samples; empty if all are at the centre.
+  std::vector<float> filter_;
+  std::vector<std::uint32_t> filter_guide_;  ///< where to begin looking in filter_, for equal steps of the offset
 };
 
 }  // namespace sightline::bidirectional
