@@ -149,10 +149,14 @@ TEST(VirtualPointLights, CarryThePowerOfTheLight) {
 TEST(VirtualPointLights, ResamplingKeepsTheMean) {
   const std::vector<Receiver> at = receivers();
   const Room room = make_room(RoomLight::point);
-  VirtualPointLightOptions few{.count = 24, .candidates = 16, .clamp_distance = 0, .max_bounces = 2};
-  VirtualPointLightOptions all = few;
-  all.count = few.count * few.candidates * 4, all.candidates = 1;
-  expect_same(mean_virtual_irradiance(room, at, few, 96), mean_virtual_irradiance(room, at, all, 12), 3, 0.05, "resampled");
+  const VirtualPointLightOptions all{.count = 1536, .candidates = 1, .clamp_distance = 0, .max_bounces = 2};
+  const std::vector<Mean> truth = mean_virtual_irradiance(room, at, all, 12);
+  // Few of many, and so many that some are drawn more than once.
+  VirtualPointLightOptions few = all, most = all;
+  few.count = 24, few.candidates = 16;
+  most.count = 256, most.candidates = 2;
+  expect_same(mean_virtual_irradiance(room, at, few, 96), truth, 3, 0.05, "few");
+  expect_same(mean_virtual_irradiance(room, at, most, 48), truth, 3, 0.02, "most");
 }
 
 TEST(VirtualPointLights, DoNotDependOnThreads) {
