@@ -165,16 +165,8 @@ void EyePaths::Impl::add_sample(std::size_t i, float cross_section, const Frame3
                                 std::uint32_t slot, std::uint32_t id) {
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
   const float cosine = glm::dot(direction, geometric);
-  samples_->push_back({.position = load(surfaces_.position, i),
-                       .geometric_normal = cosine > 0 ? -geometric : geometric,
-                       .wo = -direction,
-                       .frame = shading,
-                       .bsdf = bsdf,
-                       .weight = weight,
-                       .error = surfaces_.error[i],
-                       .area = bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine)),
-                       .slot = slot,
-                       .id = id});
+  samples_->emplace_back(load(surfaces_.position, i), cosine > 0 ? -geometric : geometric, -direction, shading, bsdf, weight,
+                         surfaces_.error[i], bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine)), slot, id);
 }
 
 void EyePaths::Impl::write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const {
