@@ -88,7 +88,7 @@ HWY_INLINE SlotV separable_slot(DU d, const PartV& eye, const PartV& light, int 
 
 /// Calls take(word, lanes that have it) in the order of for_each_word.
 template <class Take>
-HWY_INLINE void for_each_word(DU d, const WordsV& eye, const WordsV& light, Take&& take) {
+HWY_INLINE void for_each_word(DU d, const WordsV& eye, const WordsV& light, const Take& take) {
   const MU all = hn::Eq(eye.x, eye.x);
   const VU mask = hn::Set(d, 63u);
   const auto axis = [&](VU packed, int i) { return hn::And(hn::ShiftRightSame(packed, EndWords::kAxisBits * i), mask); };

@@ -76,7 +76,7 @@ constexpr CacheSlot separable_slot(EndPart eye, EndPart light, int table_bits) {
 
 /// The words of a key in the paper's order: semantic first, so that keys of different length cannot be taken for each other.
 template <class Take>
-constexpr void for_each_word(const EndWords& eye, const EndWords& light, Take&& take) {
+constexpr void for_each_word(const EndWords& eye, const EndWords& light, const Take& take) {
   take(light.semantic());
   take(eye.axis(0)), take(eye.axis(1)), take(eye.axis(2));
   take(eye.x), take(eye.y), take(eye.z), take(eye.level());
