@@ -37,7 +37,7 @@ struct Branch {
   Color throughput{1};
   float radiance_scale = 1;  ///< product of the eta² by which refraction divided the throughput
   float cone_width = 0;
-  std::uint32_t slot = 0, id = 0;
+  std::uint32_t slot = 0, turns = 0;  ///< EyeSample::slot, branch
   MediumId medium;
   RayDifferential pixel, lens;
 };
@@ -51,13 +51,13 @@ struct EyePaths::Impl {
   void start_rays(const TilePaths& paths, std::size_t count);
   void draw_mix_numbers(int depth, const TilePaths& paths);
   void visit(int depth, TilePaths& paths, Frame& frame);
-  Branch first_branch(std::size_t i, const TilePaths& paths) const;
+  Branch first_branch(std::size_t i) const;
   void visit_plain_first_hit(std::size_t i, const TilePaths& paths, Frame& frame);
   void visit_surface(int depth, std::size_t i, Branch& branch, TilePaths& paths, Frame& frame);
   void follow(std::size_t i, const Branch& branch, const SurfaceDetail& detail, MaterialId material, const Frame3& shading,
               const BsdfSample& lobe, const Vec3& wi, std::uint32_t lobe_number);
-  void add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight, std::uint32_t slot,
-                  std::uint32_t id);
+  void add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight, const TilePaths& paths,
+                  std::uint32_t slot, std::uint32_t turns);
   float bounded(float area) const { return area > least_area_ ? std::min(area, largest_area_) : least_area_; }
   void write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const;
   void sort_by_path(std::size_t first_sample);
@@ -152,21 +152,24 @@ void EyePaths::Impl::draw_mix_numbers(int depth, const TilePaths& paths) {
   sobol_2d(key_.data(), index_.data(), pair, count, u0_.data(), u1_.data());
 }
 
-Branch EyePaths::Impl::first_branch(std::size_t i, const TilePaths& paths) const {
+Branch EyePaths::Impl::first_branch(std::size_t i) const {
   Branch branch;
-  const std::size_t path = first_path_ + i;
-  branch.slot = static_cast<std::uint32_t>(path);
-  branch.id = hash_combine(path_key_[path], paths.sample[path]);
+  branch.slot = static_cast<std::uint32_t>(first_path_ + i);
   branch.cone_width = view_.cone_width();
   return branch;
 }
 
+// The sample at hit i, made in place: copying what was just written would wait for it.
 void EyePaths::Impl::add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight,
-                                std::uint32_t slot, std::uint32_t id) {
+                                const TilePaths& paths, std::uint32_t slot, std::uint32_t turns) {
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
   const float cosine = glm::dot(direction, geometric);
+  const float area = bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine));
+  const std::uint32_t path_id = hash_combine(path_key_[slot], paths.sample[slot]), id = turns == 0 ? path_id : hash_combine(path_id, turns);
+  // A member more belongs into this list, at its place.
+  static_assert(sizeof(EyeSample) == 3 * sizeof(Vec3) + sizeof(Frame3) + sizeof(Bsdf) + sizeof(Color) + 5 * sizeof(float));
   samples_->emplace_back(load(surfaces_.position, i), cosine > 0 ? -geometric : geometric, -direction, shading, bsdf, weight,
-                         surfaces_.error[i], bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine)), slot, id);
+                         surfaces_.error[i], area, slot, turns, id);
 }
 
 void EyePaths::Impl::write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const {
@@ -186,8 +189,8 @@ void EyePaths::Impl::visit_plain_first_hit(std::size_t i, const TilePaths& paths
   const Vec3 shading = load(surfaces_.shading_normal, i);
   const Color albedo = load(surfaces_.albedo, i);
   add_sample(i, camera_.cross_section(direction, hits_.t[i]),
-             frame_from_normal(sees_alike(shading, geometric, direction) ? shading : geometric), Bsdf(Lambert{albedo}), Color(1),
-             static_cast<std::uint32_t>(path), hash_combine(path_key_[path], paths.sample[path]));
+             frame_from_normal(sees_alike(shading, geometric, direction) ? shading : geometric), Bsdf(Lambert{albedo}), Color(1), paths,
+             static_cast<std::uint32_t>(path), 0);
   write_aovs(i, paths.pixel[path], albedo, shading, frame);
 }
 
@@ -230,7 +233,7 @@ void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, Til
   if (!bsdf.is_delta()) {
     float cross_section = depth == 0 ? camera_.cross_section(direction, t) : branch.pixel.cross_section(direction, t);
     if (depth > 0 && lens) cross_section += branch.lens.cross_section(direction, t);
-    add_sample(i, cross_section, shading, bsdf, branch.throughput, branch.slot, branch.id);
+    add_sample(i, cross_section, shading, bsdf, branch.throughput, paths, branch.slot, branch.turns);
   }
   if (plain) return;
   const bool passes = is_interface(scene, material);
@@ -279,7 +282,7 @@ void EyePaths::Impl::follow(std::size_t i, const Branch& branch, const SurfaceDe
   if (crosses && material.valid())
     next.medium =
         leaving < 0 && material.index < world_.scene().materials.size() ? world_.scene().materials[material.index].interior : MediumId{};
-  if (lobe_number > 0) next.id = hash_combine(branch.id, lobe_number);
+  if (lobe_number > 0) next.turns = hash_combine(branch.turns, lobe_number);
   const Vec3 origin = offset_origin(load(surfaces_.position, i), geometric, surfaces_.error[i], wi);
   next_rays_.set(next_branches_.size(), {origin, 0, wi, kInfinity});
   next_branches_.push_back(next);
@@ -310,7 +313,7 @@ void EyePaths::Impl::visit(int depth, TilePaths& paths, Frame& frame) {
       ready = true;
     }
     if (depth == 0) {
-      Branch branch = first_branch(i, paths);
+      Branch branch = first_branch(i);
       visit_surface(depth, i, branch, paths, frame);
     } else {
       visit_surface(depth, i, branches_[i], paths, frame);

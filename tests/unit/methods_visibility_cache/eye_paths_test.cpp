@@ -149,6 +149,10 @@ TEST(EyePaths, APaneSplitsInTwo) {
     EXPECT_NEAR(front.weight.x, 1 - both, 1e-5f);
     EXPECT_LE(back.weight.x + front.weight.x, 1.000001f);
     EXPECT_NE(back.id, front.id);
+    // The branch is the same for all paths that turn alike.
+    EXPECT_NE(back.branch, front.branch);
+    EXPECT_EQ(back.branch, taken.seen[0].eye.branch);
+    EXPECT_EQ(front.branch, taken.seen[1].eye.branch);
     // Both walls are seen at a distance of their own: 5 straight on, and 2 there and 7 back.
     EXPECT_NEAR(std::sqrt(back.area / front.area), 9.f / 5, 1e-3f);
   }
@@ -210,6 +214,8 @@ TEST(EyePaths, CoatsGiveASampleAndAMirror) {
   for (std::size_t k = 0; k < taken.seen.size(); k += 2) {
     EXPECT_NEAR(taken.seen[k].eye.position.z, -2, 1e-4f);
     EXPECT_EQ(taken.seen[k].eye.weight, Color(1));
+    EXPECT_EQ(taken.seen[k].eye.branch, 0u);
+    EXPECT_NE(taken.seen[k + 1].eye.branch, 0u);
     EXPECT_NEAR(taken.seen[k + 1].eye.position.z, 5, 1e-4f);
     EXPECT_NEAR(taken.seen[k + 1].eye.weight.x, fresnel_dielectric(taken.seen[k].eye.wo.z, 1.5f), 1e-5f);
   }
