@@ -27,7 +27,9 @@ struct Particle {
   std::uint32_t index = 0;
   EmissionSample emission;
   Color beta{0};
-  float scale = 1;  ///< makes throughputs comparable for Russian roulette
+  float scale = 1;                                 ///< makes throughputs comparable for Russian roulette
+  double particle_density = 0, light_density = 0;  ///< of ParticleVertex, at the surface before
+  double turn_density = 0;                         ///< of the direction, over the cosine there; 0: delta
   MediumId medium;
 };
 
@@ -51,7 +53,7 @@ class ParticleTracer {
   Vec2 random(std::uint32_t index, std::uint32_t pair) const { return sobol_2d(options_.key, index, pair); }
   void emit(std::uint32_t first, std::size_t count);
   void arrive_and_scatter(int surface, std::vector<ParticleVertex>& vertices);
-  void set_densities(const Particle& particle, const Vec3& direction, ParticleVertex& vertex) const;
+  void set_densities(const Vec3& direction, const ParticleVertex& vertex, Particle& particle) const;
 
   const World& world_;
   SurfaceReader reader_;
@@ -87,22 +89,22 @@ void ParticleTracer::emit(std::uint32_t first, std::size_t count) {
   rays_.resize(kept);
 }
 
-// Densities of the pair of light point and surface point, both by area of the surface and the measure of light sampling there.
-void ParticleTracer::set_densities(const Particle& particle, const Vec3& direction, ParticleVertex& vertex) const {
+// Densities of the pair of light point and first surface.
+void ParticleTracer::set_densities(const Vec3& direction, const ParticleVertex& vertex, Particle& particle) const {
   const EmissionSample& s = particle.emission;
   const Vec3 &position = vertex.surface.position, &normal = vertex.surface.geometric_normal;
   const double cosine = std::fabs(static_cast<double>(glm::dot(normal, direction)));
   const double leaving = static_cast<double>(s.pdf.start) * static_cast<double>(s.pdf.leave) * cosine;
   if (s.is_infinite) {
-    vertex.particle_density = leaving;
-    vertex.light_density = s.is_delta ? s.pdf.start : world_.lights().environment_pdf(position, normal, -direction);
+    particle.particle_density = leaving;
+    particle.light_density = s.is_delta ? s.pdf.start : world_.lights().environment_pdf(position, normal, -direction);
   } else if (s.is_delta) {
-    vertex.particle_density = leaving / static_cast<double>(length_squared(position - s.point));
-    vertex.light_density = s.pdf.start;
+    particle.particle_density = leaving / static_cast<double>(length_squared(position - s.point));
+    particle.light_density = s.pdf.start;
   } else {
     // dA_y = dω r² / cos_y.
-    vertex.particle_density = leaving / std::fabs(static_cast<double>(glm::dot(s.normal, direction)));
-    vertex.light_density = world_.lights().pdf(position, normal, s.light, s.point, s.normal, -direction);
+    particle.particle_density = leaving / std::fabs(static_cast<double>(glm::dot(s.normal, direction)));
+    particle.light_density = world_.lights().pdf(position, normal, s.light, s.point, s.normal, -direction);
   }
 }
 
@@ -122,7 +124,15 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
     vertex.wi = -direction;
     vertex.beta = particle.beta;
     if (!vertex.surface.bsdf.is_delta()) {
-      if (surface == 0) set_densities(particle, direction, vertex);
+      if (surface == 0) {
+        set_densities(direction, vertex, particle);
+      } else {
+        // Paths from the judges do not go on at translucent surfaces.
+        particle.particle_density *= particle.turn_density * static_cast<double>(cosine);
+        particle.light_density *= is_translucent(vertex.surface.bsdf) ? 0 : static_cast<double>(cosine * kInvPi);
+      }
+      if (!(particle.particle_density > 0) || !(particle.light_density > 0)) particle.particle_density = particle.light_density = 0;
+      vertex.particle_density = particle.particle_density, vertex.light_density = particle.light_density;
       vertices.push_back(vertex);
     }
     if (surface + 1 == options_.max_bounces) continue;
@@ -131,6 +141,9 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
     const std::optional<Turn> turn = turn_light(vertex.surface, vertex.wi, lobe.x, random(particle.index, pair_of(surface, kTurn)));
     if (!turn) continue;
     particle.beta *= turn->weight;
+    const float leaving = std::fabs(glm::dot(turn->direction, vertex.surface.geometric_normal));
+    particle.turn_density = turn->is_delta || !(leaving > 0) ? 0 : static_cast<double>(turn->pdf) / static_cast<double>(leaving);
+    if (turn->is_delta) particle.particle_density = particle.light_density = 0;
     if (is_black(particle.beta) || !is_finite(particle.beta)) continue;
     if (surface + 1 >= kRouletteStart) {
       const float survival = std::min(1.f, max_component(particle.beta) * particle.scale);

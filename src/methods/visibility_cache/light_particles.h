@@ -17,9 +17,9 @@ struct ParticleVertex {
   SurfacePoint surface;
   Vec3 wi{0, 0, 1};  ///< unit, towards where the particle came from
   Color beta{0};     ///< flux of the particle, as if it were the only one, over the geometric cosine of arrival
-  /// Where the light itself is at the far end, so that light sampling might have found it, else 0: densities of light point and surface
-  /// point together, that of the particle, and of light sampling for a given surface point; by area of the surface, and by solid angle
-  /// there or, for delta lights, discrete.
+  /// Where paths from the judges that are connected to lights might have found it, else 0: densities of particles and of such paths (over
+  /// that of their first surface). Both by area of this surface, by solid angle of the directions from it and the surfaces towards the
+  /// light, and, for delta lights, by the choice of light in place of the last direction.
   double particle_density = 0, light_density = 0;
 };
 

@@ -46,6 +46,7 @@ std::optional<Turn> turn_light(const SurfacePoint& surface, const Vec3& wi, floa
   turn.crosses = leaving * glm::dot(wi, geometric) < 0;
   if (turn.crosses != sample->is_transmission) return std::nullopt;
   if (!turn.is_delta) {
+    turn.pdf = sample->pdf;
     turn.weight = scattered(surface, turn.direction, wi) * (std::fabs(leaving) / sample->pdf);
     return turn;
   }
@@ -55,11 +56,19 @@ std::optional<Turn> turn_light(const SurfacePoint& surface, const Vec3& wi, floa
   return turn;
 }
 
+float light_turn_pdf(const SurfacePoint& surface, const Vec3& wi, const Vec3& wo) {
+  const Vec3& geometric = surface.geometric_normal;
+  const Frame3 lit = frame_towards(surface.frame, geometric, wi, surface.plain);
+  const Vec3 i = lit.to_local(wi), o = lit.to_local(wo);
+  if ((o.z * i.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) return 0;
+  return surface.bsdf.evaluate(i, o, TransportMode::importance).pdf;
+}
+
 std::optional<Turn> turn_eye(const SurfacePoint& surface, const Vec3& wo, float u_lobe, const Vec2& u) {
   const Frame3 seen = frame_towards(surface.frame, surface.geometric_normal, wo, surface.plain);
   const std::optional<BsdfSample> sample = surface.bsdf.sample(seen.to_local(wo), u_lobe, u, TransportMode::radiance);
   if (!sample || !sample->is_delta) return std::nullopt;
-  Turn turn{seen.to_world(sample->wi), sample->weight, true, false};
+  Turn turn{seen.to_world(sample->wi), sample->weight, 0, true, false};
   turn.crosses = glm::dot(turn.direction, surface.geometric_normal) * glm::dot(wo, surface.geometric_normal) < 0;
   if (turn.crosses != sample->is_transmission) return std::nullopt;
   return turn;

@@ -41,10 +41,13 @@ struct Turn {
   /// Factor of the throughput. On light paths it takes flux over the geometric cosine of arrival to flux, so that shading normals do to
   /// light what they do to eye paths [Veach1997, §5.3].
   Color weight{0};
+  float pdf = 0;  ///< by solid angle; 0 where delta
   bool is_delta = false, crosses = false;
 };
 /// Light that arrives from unit `wi` goes on.
 std::optional<Turn> turn_light(const SurfacePoint& surface, const Vec3& wi, float u_lobe, const Vec2& u);
+/// Density with which it goes on along `wo`, apart from deltas.
+float light_turn_pdf(const SurfacePoint& surface, const Vec3& wi, const Vec3& wo);
 /// An eye path that arrived from unit `wo` goes on at a delta surface.
 std::optional<Turn> turn_eye(const SurfacePoint& surface, const Vec3& wo, float u_lobe, const Vec2& u);
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/sample/sobol.h"
+#include "methods/visibility_cache/judge_paths.h"
 #include "methods/visibility_cache/vpl_candidates.h"
 #include "methods/visibility_cache/vpl_density.h"
 
@@ -18,7 +19,7 @@ constexpr std::uint32_t kKey = 0x56504c73u;  // light paths of their own, whatev
 constexpr std::size_t kNeighbours = 8;
 constexpr std::size_t kMostTries = 32;  // for each candidate that is wanted: where light hardly gets in
 
-enum Stream : std::uint32_t { kJudges, kParticleTrial, kParticles, kBounceTrial, kBounces, kChoice };
+enum Stream : std::uint32_t { kJudges, kParticleTrial, kParticles, kJudgePathTrial, kJudgePaths, kChoice };
 
 /// A candidate that was chosen, and how often over how often was expected.
 struct Survivor {
@@ -139,8 +140,8 @@ VirtualPointLights make_virtual_point_lights(const World& world, const View& vie
     vpl::CandidateCounts counts;
     const auto backward_wanted =
         judges.empty() ? std::size_t{0} : static_cast<std::size_t>(std::lround(static_cast<double>(total) * static_cast<double>(share)));
-    counts.from_judges =
-        vpl::samples_from_judges_for(backward_wanted, backward_wanted * kMostTries, world, judges, stream(kBounceTrial), context, rays);
+    const vpl::JudgePathOptions path_trial{options.max_bounces, stream(kJudgePathTrial)}, paths{options.max_bounces, stream(kJudgePaths)};
+    counts.from_judges = vpl::judge_paths_for(backward_wanted, backward_wanted * kMostTries, world, judges, path_trial, context, rays);
     const std::size_t vertices = total - backward_wanted;
     const vpl::ParticleOptions trial{options.max_bounces, stream(kParticleTrial)}, particles{options.max_bounces, stream(kParticles)};
     counts.particles = vpl::particles_for(vertices, vertices * kMostTries, world, trial, context, rays);
@@ -148,8 +149,8 @@ VirtualPointLights make_virtual_point_lights(const World& world, const View& vie
     candidates = vpl::candidates_of(vpl::trace_particles(world, particles, options.pass * static_cast<std::uint32_t>(counts.particles),
                                                          counts.particles, context, rays),
                                     counts.particles);
-    const std::vector<Candidate> backward = vpl::candidates_from_judges(
-        world, judges, stream(kBounces), options.pass * static_cast<std::uint32_t>(counts.from_judges), counts.from_judges, context, rays);
+    const std::vector<Candidate> backward = vpl::trace_judge_paths(
+        world, judges, paths, options.pass * static_cast<std::uint32_t>(counts.from_judges), counts.from_judges, context, rays);
     candidates.insert(candidates.end(), backward.begin(), backward.end());
     vpl::weigh(world, judges, judge_count, counts, max_geometry_term, candidates, context, rays);
     std::erase_if(candidates, [](const Candidate& c) { return is_black(c.beta); });

@@ -18,9 +18,9 @@ struct VirtualPointLightOptions {
   int count = 256;               ///< M: lights kept (fewer after duplicates are merged)
   int candidates = 8;            ///< M_c / M
   int eye_samples = 64;          ///< that judge the candidates
-  float backward_share = 0.5f;   ///< of the candidates: made from the eye (eye vertex, one bounce, connected to a light)
+  float backward_share = 0.5f;   ///< of the candidates: made by paths from the eye samples, connected to lights
   float clamp_distance = 0.02f;  ///< the geometry term is clamped at 1 / (clamp_distance B_R)²; 0 = not clamped
-  int max_bounces = 8;           ///< of light paths before the eye's surface: 1 = light, VPL, eye
+  int max_bounces = 8;           ///< of light paths before the eye's surface, mirrors and glass included: 1 = light, VPL, eye
   std::uint64_t seed = 0;
   std::uint32_t pass = 0;  ///< absolute index of the pass: each has lights of its own
 };
@@ -45,8 +45,8 @@ struct VirtualPointLights {
 Color radiance_towards(const VirtualPointLights& lights, std::size_t i, const Vec3& w);
 
 /// Lights of one pass; their expected contribution is light that was reflected once to max_bounces times before it reaches the surface
-/// that the eye sees. With backward_share = 1 only once, without mirrors and glass before it, and only where one of the eye samples sees.
-/// The result depends on options and scene alone, not on the threads of `context`.
+/// that the eye sees. With backward_share = 1 without mirrors, glass and what lies behind translucent surfaces, and only from surfaces that
+/// one of the eye samples sees. The result depends on options and scene alone, not on the threads of `context`.
 VirtualPointLights make_virtual_point_lights(const World& world, const View& view, const VirtualPointLightOptions& options,
                                              const Context& context, RayCounts& rays);
 

@@ -2,110 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "base/parallel/parallel.h"
-#include "base/sample/sobol.h"
-#include "base/sample/warp.h"
+#include "methods/visibility_cache/counted_chunks.h"
 
 namespace sightline::vpl {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kBatch = 256;      // candidates from judges
 constexpr std::size_t kRayBatch = 2048;  // between judges and candidates
-
-// Pairs of random numbers of a candidate from a judge.
-enum Pair : std::uint32_t { kDirection, kLightPick, kLightPoint };  // of kLightPick: light, mix
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-
-// The judge that sample `index` of `count` starts from: each gets its share, and none more than one above it.
-std::uint32_t judge_of(std::size_t sample, std::size_t count, float offset, std::size_t judges) {
-  const double place =
-      (static_cast<double>(sample) + static_cast<double>(offset)) * static_cast<double>(judges) / static_cast<double>(count);
-  return static_cast<std::uint32_t>(std::min(static_cast<std::size_t>(place), judges - 1));
-}
-
-class JudgeBounces {
- public:
-  explicit JudgeBounces(const World& world) : world_(world), reader_(world) {}
-
-  void trace(std::span<const Judge> judges, std::span<const std::uint32_t> judge, std::uint32_t key, std::uint32_t first,
-             std::vector<Candidate>& candidates, RayCounts& counts) {
-    rays_.resize(judge.size());
-    for (std::size_t i = 0; i < judge.size(); ++i) {
-      const Judge& from = judges[judge[i]];
-      const Vec2 u = sobol_2d(key, first + static_cast<std::uint32_t>(i), kDirection);
-      const Vec3 direction = frame_from_normal(from.normal).to_world(sample_cosine_hemisphere(u));
-      rays_.set(i, {offset_origin(from.position, from.normal, from.error, direction), 0, direction, kInfinity});
-    }
-    world_.tracer().intersect(rays_, hits_, BatchKind::bounce, counts);
-    world_.surfaces(rays_, hits_, surfaces_);
-    connect_lights(judges, judge, key, first);
-    occluded_.resize(padded(found_.size()));
-    world_.tracer().occluded(shadow_, occluded_, BatchKind::shadow_diffuse, counts);
-    for (std::size_t k = 0; k < found_.size(); ++k) {
-      if (!occluded_[k]) candidates.push_back(found_[k]);
-    }
-  }
-
- private:
-  void connect_lights(std::span<const Judge> judges, std::span<const std::uint32_t> judge, std::uint32_t key, std::uint32_t first);
-
-  const World& world_;
-  SurfaceReader reader_;
-  RayBatch rays_, shadow_;
-  HitBatch hits_;
-  SurfaceBatch surfaces_;
-  std::vector<Candidate> found_;
-  AlignedVector<std::uint8_t> occluded_;
-};
-
-void JudgeBounces::connect_lights(std::span<const Judge> judges, std::span<const std::uint32_t> judge, std::uint32_t key,
-                                  std::uint32_t first) {
-  const LightTable& lights = world_.lights();
-  found_.clear();
-  shadow_.resize(judge.size());
-  for (std::size_t i = 0; i < judge.size(); ++i) {
-    if (!hits_.hit(i)) continue;
-    const std::uint32_t index = first + static_cast<std::uint32_t>(i);
-    const Vec2 pick = sobol_2d(key, index, kLightPick);
-    Candidate candidate;
-    candidate.judge = judge[i];
-    candidate.surface = reader_.read(rays_, hits_, surfaces_, i, 0, pick.y);
-    const SurfacePoint& surface = candidate.surface;
-    if (surface.bsdf.is_delta()) continue;
-    const LightSample light = lights.sample(surface.position, surface.geometric_normal, pick.x, sobol_2d(key, index, kLightPoint));
-    if (!(light.pdf > 0) || is_black(light.radiance)) continue;
-    const float side = glm::dot(surface.geometric_normal, light.wi);
-    const float seen = -glm::dot(surface.geometric_normal, load(rays_.direction, i));
-    if (side == 0 || (side * seen <= 0 && !is_translucent(surface.bsdf))) continue;
-    candidate.normal = side > 0 ? surface.geometric_normal : -surface.geometric_normal;
-    candidate.wi = light.wi;
-    candidate.beta = light.radiance;
-    candidate.light_density = light.pdf;
-    // The density of particles that make the same pair of points.
-    const bool infinite = std::isinf(light.distance);
-    const Vec3 leaving = -light.wi;
-    const EmissionPdf emission = lights.emission_pdf(light.light, light.point, leaving);
-    candidate.particle_density =
-        static_cast<double>(emission.start) * static_cast<double>(emission.leave) * std::fabs(static_cast<double>(side));
-    const MediumId medium = side * seen > 0 ? judges[judge[i]].medium : side < 0 ? surface.interior : MediumId{};
-    const Vec3 origin = offset_origin(surface.position, surface.geometric_normal, surface.error, light.wi);
-    if (infinite) {
-      shadow_.set(found_.size(), {origin, 0, light.wi, kInfinity});
-    } else {
-      const double squared = static_cast<double>(light.distance) * static_cast<double>(light.distance);
-      candidate.particle_density /=
-          light.is_delta ? squared : std::fmax(std::fabs(static_cast<double>(glm::dot(light.normal, light.wi))), 1e-30);
-      if (medium.valid()) candidate.beta *= glm::exp(-world_.scene().media[medium.index].sigma_a * light.distance);
-      shadow_.set(found_.size(), {origin, 0, offset_origin(light.point, light.normal, light.point_error, leaving) - origin, 1});
-    }
-    found_.push_back(candidate);
-  }
-  shadow_.resize(found_.size());
-}
 
 /// Rays between candidates and judges that may exchange light, and what comes of them.
 class Jury {
@@ -201,14 +104,6 @@ void Jury::decide(Candidate& candidate, std::size_t begin, std::size_t end) cons
   if (!(candidate.importance > 0) || !std::isfinite(candidate.importance)) candidate.importance = 0;
 }
 
-/// Calls work(begin, end, rays) on chunks and adds up the rays.
-template <class Work>
-void count_in_chunks(std::size_t count, std::size_t grain, const Context& context, RayCounts& rays, Work&& work) {
-  std::vector<RayCounts> counts((count + grain - 1) / grain);
-  parallel_for(context, count, grain, [&](std::size_t begin, std::size_t end) { work(begin, end, counts[begin / grain]); });
-  for (const RayCounts& c : counts) rays += c;
-}
-
 }  // namespace
 
 std::vector<Candidate> candidates_of(std::span<const ParticleVertex> vertices, std::size_t particles) {
@@ -228,35 +123,10 @@ std::vector<Candidate> candidates_of(std::span<const ParticleVertex> vertices, s
   return candidates;
 }
 
-std::vector<Candidate> candidates_from_judges(const World& world, std::span<const Judge> judges, std::uint32_t key, std::uint32_t first,
-                                              std::size_t count, const Context& context, RayCounts& rays) {
-  if (judges.empty() || count == 0 || world.lights().size() == 0) return {};
-  const float offset = sobol_2d(hash32(key), first / static_cast<std::uint32_t>(count), 0).x;
-  std::vector<std::uint32_t> judge(count);
-  for (std::size_t i = 0; i < count; ++i) judge[i] = judge_of(i, count, offset, judges.size());
-  std::vector<std::vector<Candidate>> found((count + kBatch - 1) / kBatch);
-  count_in_chunks(count, kBatch, context, rays, [&](std::size_t begin, std::size_t end, RayCounts& counts) {
-    JudgeBounces bounces(world);
-    bounces.trace(judges, std::span(judge).subspan(begin, end - begin), key, first + static_cast<std::uint32_t>(begin),
-                  found[begin / kBatch], counts);
-  });
-  std::vector<Candidate> candidates;
-  for (const std::vector<Candidate>& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
-  return candidates;
-}
-
-std::size_t samples_from_judges_for(std::size_t wanted, std::size_t most, const World& world, std::span<const Judge> judges,
-                                    std::uint32_t key, const Context& context, RayCounts& rays) {
-  if (judges.empty()) return 0;
-  return samples_for(wanted, most, [&](std::size_t first, std::size_t count) {
-    return candidates_from_judges(world, judges, key, static_cast<std::uint32_t>(first), count, context, rays).size();
-  });
-}
-
 void weigh(const World& world, std::span<const Judge> judges, std::size_t judge_count, const CandidateCounts& counts,
            float max_geometry_term, std::span<Candidate> candidates, const Context& context, RayCounts& rays) {
   const std::size_t grain = std::max<std::size_t>(1, kRayBatch / std::max<std::size_t>(1, judges.size()));
-  count_in_chunks(candidates.size(), grain, context, rays, [&](std::size_t begin, std::size_t end, RayCounts& counted) {
+  for_counted_chunks(candidates.size(), grain, context, rays, [&](std::size_t begin, std::size_t end, RayCounts& counted) {
     Jury(world, judges, std::max<std::size_t>(judge_count, 1), counts, max_geometry_term)
         .hear(candidates.subspan(begin, end - begin), counted);
   });

@@ -20,7 +20,8 @@ struct Candidate {
   Vec3 wi{0, 0, 1};      ///< unit, towards where the light came from
   Color beta{0};         ///< flux over the geometric cosine of arrival, divisions by counts and probabilities done
   float importance = 0;  ///< luminance that it sends to the judges, on average
-  /// Sample densities of both ways to make it, for weighting; particle_density = light_density = 0: there is but one.
+  /// For weighting, sample densities of both ways to make it: that of particles, and that of paths from the judges over that of their
+  /// first surface; in one measure (ParticleVertex). Both 0: there is but one way.
   double particle_density = 0, light_density = 0;
   std::uint32_t judge = kNoJudge;  ///< from which it was made
   static constexpr std::uint32_t kNoJudge = 0xffffffffu;
@@ -40,16 +41,7 @@ struct CandidateCounts {
 /// Particles' vertices, each with the flux of its share of `particles`.
 std::vector<Candidate> candidates_of(std::span<const ParticleVertex> vertices, std::size_t particles);
 
-/// One bounce from the judges, connected to a light there: samples [first, first + count), the failed left out. `beta` is the radiance
-/// that arrives, still to be divided by the density.
-std::vector<Candidate> candidates_from_judges(const World& world, std::span<const Judge> judges, std::uint32_t key, std::uint32_t first,
-                                              std::size_t count, const Context& context, RayCounts& rays);
-
-/// How many samples from the judges leave about `wanted` candidates, at most `most`; decided by samples of their own.
-std::size_t samples_from_judges_for(std::size_t wanted, std::size_t most, const World& world, std::span<const Judge> judges,
-                                    std::uint32_t key, const Context& context, RayCounts& rays);
-
-/// Traces the rays between judges and candidates; weights the first bounces of either technique by the densities of both, and finds the
+/// Traces the rays between judges and candidates; weights what both techniques make by the densities of both, and finds the
 /// importance of all. `judge_count`: camera rays that were sent out to find judges. `max_geometry_term` clamps cos cos / r².
 void weigh(const World& world, std::span<const Judge> judges, std::size_t judge_count, const CandidateCounts& counts,
            float max_geometry_term, std::span<Candidate> candidates, const Context& context, RayCounts& rays);

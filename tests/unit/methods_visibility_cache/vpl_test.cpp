@@ -62,7 +62,7 @@ TEST(VirtualPointLights, ManyBouncesAgreeWithPathTracing) {
   for (const RoomLight light : {RoomLight::area, RoomLight::environment}) {
     const Room room = make_room(light);
     const std::vector<Mean> truth = path_traced(room, at, 3, 1 << 16);
-    for (const float share : {0.f, 0.5f}) {
+    for (const float share : {0.f, 0.5f, 1.f}) {
       const VirtualPointLightOptions options{.count = 64, .candidates = 4, .backward_share = share, .clamp_distance = 0, .max_bounces = 3};
       expect_same(mean_virtual_irradiance(room, at, options, kSeeds), truth, 3, 0.07, room.name + ", share " + std::to_string(share));
     }
@@ -105,8 +105,8 @@ TEST(VirtualPointLights, ParticlesGoByWayOfMirrors) {
 TEST(VirtualPointLights, ComeFromTheEyeWhereParticlesHardlyGetIn) {
   const std::vector<Receiver> at{receivers()[2]};
   const Room room = make_slit_room();
-  const std::vector<Mean> truth = path_traced(room, at, 1, 1 << 18);
-  VirtualPointLightOptions options{.count = 32, .candidates = 4, .clamp_distance = 0, .max_bounces = 1};
+  const std::vector<Mean> truth = path_traced(room, at, 3, 1 << 17);
+  VirtualPointLightOptions options{.count = 32, .candidates = 4, .clamp_distance = 0, .max_bounces = 3};
   const std::vector<Mean> both = mean_virtual_irradiance(room, at, options, kSeeds);
   expect_same(both, truth, 3, 0.15, "slit");
   // Particles alone find next to nothing.
