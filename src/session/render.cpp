@@ -1,6 +1,7 @@
 #include "session/render.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -75,16 +76,32 @@ void write_checkpoint(const std::filesystem::path& path, const RenderResult& res
 
 std::string simd_target_name() { return simd_target(); }
 
+namespace {
+
+const VisibilityInfo* visibility_that_knows(const std::string& key) {
+  for (const VisibilityInfo& info : visibilities()) {
+    if (knows(info.settings, key)) return &info;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& visibility, const std::vector<std::string>& assignments) {
-  ResolvedSettings resolved{method.default_settings(), visibility.settings};
+  ResolvedSettings resolved{method.default_settings(), visibility.settings, {}};
   for (const std::string& assignment : assignments) {
     const std::string key = assignment.substr(0, assignment.find('='));
     if (knows(resolved.method, key))
       resolved.method.apply(assignment);
     else if (knows(resolved.visibility, key))
       resolved.visibility.apply(assignment);
-    else
+    else if (const VisibilityInfo* other = visibility_that_knows(key)) {
+      // Checked all the same: a comparison differs in --visibility alone, and a slip in the rest shows in every run of it.
+      SettingsValue(other->settings).apply(assignment);
+      resolved.unused.push_back(key);
+    } else {
       throw_unknown_setting(key, {&resolved.method.schema(), &resolved.visibility.schema()});
+    }
   }
   return resolved;
 }
@@ -118,6 +135,8 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   const Method& method = find_method(request.method);
   const VisibilityInfo& visibility_info = find_visibility(request.visibility.value_or(method.default_visibility()));
   const ResolvedSettings settings = resolve_settings(method, visibility_info, request.settings);
+  if (!settings.unused.empty())
+    context.info(fmt::format("visibility '{}' has no setting {}", visibility_info.name, fmt::join(settings.unused, ", ")));
   check_supported(method, world->scene());
 
   // What neither the user nor the scene decides is the method's.

@@ -63,6 +63,7 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
 /// The settings of a request resolved: throws Error{usage} for unknown keys (nearest of both schemas) and bad values.
 struct ResolvedSettings {
   SettingsValue method, visibility;
+  std::vector<std::string> unused;  ///< settings of other visibilities, given so that runs to be compared differ in --visibility alone
 };
 ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& visibility, const std::vector<std::string>& assignments);
 

@@ -1,6 +1,7 @@
 #include <string>
 
 #include "base/core/error.h"
+#include "visibility/automatic/automatic.h"
 #include "visibility/cached/cached.h"
 #include "visibility/exact/exact.h"
 #include "visibility/nee_plus_plus/nee_plus_plus.h"
@@ -13,6 +14,7 @@ const std::vector<VisibilityInfo>& visibilities() {
   static const std::vector<VisibilityInfo> table = {
       exact_visibility(),
       cached_visibility(),
+      automatic_visibility(),
       nee_plus_plus_visibility(),
       shadow_map_visibility(),
   };

@@ -246,7 +246,7 @@ void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistic
   copy(lights.position, lights.size, queries_.light.position);
   copy(lights.normal, lights.size, queries_.light.normal);
   std::copy_n(lights.error.data(), lights.size, queries_.light.error.data());
-  std::copy_n(lights.cell_area.data(), lights.size, queries_.light.cell_area.data());
+  for (std::size_t j = 0; j < lights.size; ++j) queries_.light.cell_area[j] = lights.cell_area[j] * settings_.vpl_spread;
   std::iota(queries_.light.id.data(), queries_.light.id.data() + lights.size, 0u);
   std::fill_n(queries_.semantic.data(), lights.size, byte(QuerySemantic::surface));
   queries_.kind = BatchKind::shadow_diffuse;

@@ -14,6 +14,7 @@ struct VisibilityCacheSettings {
   int vpl_candidates = 8;
   float vpl_backward = 0.5f;
   float vpl_clamp = 0.02f;
+  float vpl_spread = 1;
   int specular_depth = 8;
   float least_weight = 0.01f;
   int pass_spp = 0;
@@ -43,6 +44,10 @@ struct VisibilityCacheSettings {
            .minimum = 0,
            .maximum = 1,
            .unit = "radii of the scene"});
+    visit("vpl_spread", &S::vpl_spread,
+          {.help = "cells around virtual point lights, as a share of the surface that one stands for: smaller ones share fewer answers",
+           .minimum = 1e-6,
+           .maximum = 16});
     visit("specular_depth", &S::specular_depth, {.help = "mirrors and panes an eye path passes", .minimum = 0, .maximum = 64});
     visit("least_weight", &S::least_weight, {.help = "eye paths that carry less are dropped", .minimum = 0, .maximum = 1});
     visit("pass_spp", &S::pass_spp,
