@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "base/sample/sobol.h"
 #include "methods/visibility_cache/judge_paths.h"
@@ -49,11 +52,43 @@ void sort_in_space(const Bounds& bounds, std::vector<Candidate>& candidates) {
                     spread_bits(static_cast<std::uint32_t>(cell.z)) << 2,
                 i};
   }
-  std::sort(order.begin(), order.end());
+  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    if (a.first != b.first) return a.first < b.first;
+    const Vec3 &p = candidates[a.second].surface.position, &q = candidates[b.second].surface.position;
+    if (p != q) return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    return a.second < b.second;
+  });
   std::vector<Candidate> sorted;
   sorted.reserve(candidates.size());
   for (const auto& [code, i] : order) sorted.push_back(candidates[i]);
   candidates.swap(sorted);
+}
+
+// Paths from the eye end at the same place with light of one bounce, of two, ... Where that goes on alike, they are one light. Sorted.
+void merge_coincident(std::vector<Candidate>& candidates) {
+  const auto cosine = [](const Candidate& c) {
+    return std::fabs(glm::dot(c.wi, vpl::frame_towards(c.surface.frame, c.surface.geometric_normal, c.wi, c.surface.plain).normal));
+  };
+  std::size_t kept = 0;
+  for (Candidate& c : candidates) {
+    if (kept > 0) {
+      Candidate& last = candidates[kept - 1];
+      if (last.surface.position == c.surface.position && last.normal == c.normal && last.is_lambert() && c.is_lambert()) {
+        const float mine = cosine(last), others = cosine(c);
+        // The one with the greater cosine stands for both.
+        if (others > mine) {
+          last.beta = c.beta + last.beta * (mine / others);
+          last.wi = c.wi;
+        } else if (mine > 0) {
+          last.beta += c.beta * (others / mine);
+        }
+        last.importance += c.importance;
+        continue;
+      }
+    }
+    candidates[kept++] = c;
+  }
+  candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(kept), candidates.end());
 }
 
 /// Of candidates with their importances `count` by systematic resampling [Segovia2006]; all where there are no more than that.
@@ -153,8 +188,9 @@ VirtualPointLights make_virtual_point_lights(const World& world, const View& vie
         world, judges, paths, options.pass * static_cast<std::uint32_t>(counts.from_judges), counts.from_judges, context, rays);
     candidates.insert(candidates.end(), backward.begin(), backward.end());
     vpl::weigh(world, judges, judge_count, counts, max_geometry_term, candidates, context, rays);
-    std::erase_if(candidates, [](const Candidate& c) { return is_black(c.beta); });
+    std::erase_if(candidates, [](const Candidate& c) { return !(c.power() > 0) && !(c.importance > 0); });
     sort_in_space(world.bounds(), candidates);
+    merge_coincident(candidates);
   }
 
   const float u = sobol_2d(stream(kChoice), options.pass, 0).x;

