@@ -255,14 +255,18 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   info->add_flag("--json", line.info.json, "as JSON");
 
   CLI::App* bench = app.add_subcommand("bench", "measure: methods and tracers side by side");
-  bench->add_option("SUITE", line.bench.suites, "trace (default)");
-  bench->add_option("--view", line.bench.views, "a standard view instead of the suite's own; repeatable")
-      ->type_name("NAME")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  bench->add_option("SUITE", line.bench.suites, "trace (default) or visibility-cache");
+  const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
+    bench->add_option(name, target, help)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
+  };
+  add_list("--view", line.bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
+  add_list("--part", line.bench.parts, "visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)", "LIST");
+  add_list("--ce", line.bench.ce, "visibility-cache: C_E of the curves (default: 4,8,16,36,64)", "LIST");
+  add_list("--spp", line.bench.spp, "visibility-cache: samples a pixel of curves and shadow maps (default: 1,9,16)", "LIST");
   bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
+  bench->add_option("--html", line.bench.html, "visibility-cache: charts, tables and pictures as one page")->type_name("FILE");
+  bench->add_option("--strip", line.bench.strip, "visibility-cache: frames of the camera move as a PNG")->type_name("FILE");
   add_parsed(*bench, "--size", line.bench.size_px, parse_size, "picture size (default: the views' own, 1280x960)", "WxH");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
 

@@ -57,8 +57,9 @@ struct InfoCommand {
 
 struct BenchCommand {
   std::vector<std::string> suites, views;
+  std::vector<std::string> parts, ce, spp;  ///< of the suite visibility-cache
   std::optional<IVec2> size_px;
-  std::string json, markdown;
+  std::string json, markdown, html, strip;
   bool quick = false;
 };
 

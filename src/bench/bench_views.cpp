@@ -1,6 +1,11 @@
 #include "bench/bench_views.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "base/core/error.h"
+#include "base/settings/settings.h"
 #include "scene/load/load.h"
 #include "session/options_text.h"
 #include "session/setup.h"
@@ -9,40 +14,94 @@ namespace sightline {
 namespace {
 
 struct ViewInfo {
-  std::string name, spec;  ///< scene; a path is relative to the data folder
-  std::string needs;       ///< file that must be there, or empty
-  std::optional<Vec3> eye, target;
+  std::string name, spec;           ///< scene; a path is relative to the data folder
+  std::vector<std::string> needs;   ///< files that must be there
+  std::optional<Vec3> eye, target;  ///< instead of the scene's own camera
   float fov_deg = 0;
-  std::vector<std::string> area_lights;
+  std::vector<std::string> area_lights, point_lights, directional_lights;
+  std::string environment;  ///< file below the data folder
+  bool own_materials = false;
 };
 
-const std::vector<ViewInfo>& views() {
-  static const std::vector<ViewInfo> table = {
-      {"dragon-room", "builtin:room,content=meshes/dragon_vrip.ply", "meshes/dragon_vrip.ply", {}, {}, 0, {}},
-      {"sponza-court",
-       "scenes/sponza-dabrovic/sponza.obj",
-       "scenes/sponza-dabrovic/sponza.obj",
-       Vec3(-12, 3, 0.5f),
-       Vec3(5, 4.5f, 0),
-       65,
-       {"0,11,0 0,-1,0 2x2 60,60,60"}},
-      {"hairball-room", "builtin:room,content=hairball", "", {}, {}, 0, {}},
-      {"sponza-arcade",
-       "scenes/sponza-dabrovic/sponza.obj",
-       "scenes/sponza-dabrovic/sponza.obj",
-       Vec3(-13, 6.5f, -5.2f),
-       Vec3(8, 4, 1),
-       65,
-       {"2,9,0 0,-1,0 1x1 200,200,200"}},
-      {"conference",
-       "scenes/conference/conference.ply",
-       "scenes/conference/conference.ply",
-       Vec3(0, 300, 0),
-       Vec3(1000, 100, 0),
-       60,
-       {"300,640,-200 0,-1,0 400x400 12,12,12"}},
+constexpr const char* kSponza = "scenes/sponza-dabrovic/sponza.obj";
+constexpr const char* kConference = "scenes/conference/conference.ply";
+constexpr const char* kKitchen = "pbrt/kitchen/scene-v4.pbrt";
+constexpr const char* kStaircase = "pbrt/staircase2/scene-v4.pbrt";
+constexpr const char* kForest = "environments/phalzer_forest_01_1k.hdr";
+
+/// 24 point lights in three rows of eight, by turns at two heights.
+std::vector<std::string> rows_of_points() {
+  std::vector<std::string> lights;
+  for (int i = 0; i < 24; ++i) {
+    const double x = -14 + 4 * (i / 3), y = i % 2 == 0 ? 2.5 : 6.5, z = -5.5 + 5.5 * (i % 3);
+    lights.push_back(fmt::format("{},{},{} 20,20,20", x, y, z));
+  }
+  return lights;
+}
+
+/// Nine lights under the ceiling, 400 apart.
+std::vector<std::string> grid_of_areas() {
+  std::vector<std::string> lights;
+  for (int i = 0; i < 9; ++i)
+    lights.push_back(fmt::format("{},640,{} 0,-1,0 100x100 20,20,20", 300 + 400 * (i % 3 - 1), -200 + 400 * (i / 3 - 1)));
+  return lights;
+}
+
+std::vector<ViewInfo> make_views() {
+  const ViewInfo sponza{.name = "sponza-court",
+                        .spec = kSponza,
+                        .needs = {kSponza},
+                        .eye = Vec3(-12, 3, 0.5f),
+                        .target = Vec3(5, 4.5f, 0),
+                        .fov_deg = 65,
+                        .area_lights = {"0,11,0 0,-1,0 2x2 60,60,60"}};
+  ViewInfo points = sponza;
+  points.name = "sponza-points", points.area_lights.clear();
+  points.point_lights = rows_of_points(), points.directional_lights = {"0.3,-1,0.2 3,3,3"};
+  ViewInfo arcade = sponza;
+  arcade.name = "sponza-arcade", arcade.area_lights = {"2,9,0 0,-1,0 1x1 200,200,200"};
+  arcade.eye = Vec3(-13, 6.5f, -5.2f), arcade.target = Vec3(8, 4, 1);
+  const ViewInfo conference{.name = "conference",
+                            .spec = kConference,
+                            .needs = {kConference},
+                            .eye = Vec3(0, 300, 0),
+                            .target = Vec3(1000, 100, 0),
+                            .fov_deg = 60,
+                            .area_lights = {"300,640,-200 0,-1,0 400x400 12,12,12"}};
+  ViewInfo nine = conference;
+  nine.name = "conference-9", nine.area_lights = grid_of_areas();
+  const char* dragon = "meshes/dragon_vrip.ply";
+  return {
+      {.name = "dragon-room", .spec = fmt::format("builtin:room,content={}", dragon), .needs = {dragon}},
+      sponza,
+      {.name = "hairball-room", .spec = "builtin:room,content=hairball"},
+      arcade,
+      points,
+      conference,
+      nine,
+      {.name = "hairball-open", .spec = "builtin:open-room,content=hairball", .needs = {kForest}, .environment = kForest},
+      {.name = "kitchen", .spec = kKitchen, .needs = {kKitchen}, .own_materials = true},
+      {.name = "kitchen-vpl", .spec = kKitchen, .needs = {kKitchen}, .own_materials = true},
+      {.name = "staircase", .spec = kStaircase, .needs = {kStaircase}, .own_materials = true},
   };
+}
+
+const std::vector<ViewInfo>& views() {
+  static const std::vector<ViewInfo> table = make_views();
   return table;
+}
+
+// The first of the folders that has all files.
+std::optional<std::filesystem::path> folder_with(const std::vector<std::string>& files, const std::string& folders) {
+  std::size_t begin = 0;
+  while (begin <= folders.size()) {
+    const std::size_t end = std::min(folders.find(':', begin), folders.size());
+    const std::filesystem::path folder = folders.substr(begin, end - begin);
+    if (std::all_of(files.begin(), files.end(), [&](const std::string& file) { return std::filesystem::exists(folder / file); }))
+      return folder;
+    begin = end + 1;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -54,29 +113,36 @@ std::vector<std::string> bench_view_names() {
 }
 
 std::optional<BenchView> load_bench_view(const std::string& name, const std::filesystem::path& data, const Context& context) {
-  const ViewInfo* info = nullptr;
-  for (const ViewInfo& view : views()) {
-    if (view.name == name) info = &view;
+  ViewInfo info{.name = name, .spec = name};
+  if (!name.starts_with("builtin:")) {
+    const auto known = std::find_if(views().begin(), views().end(), [&](const ViewInfo& view) { return view.name == name; });
+    if (known == views().end()) {
+      const std::string nearest = nearest_name(name, bench_view_names());
+      throw usage_error("unknown view '" + name + "'")
+          .remedy(nearest.empty() ? fmt::format("known: {}", fmt::join(bench_view_names(), ", ")) : "did you mean '" + nearest + "'?");
+    }
+    info = *known;
   }
-  if (!info) throw usage_error("unknown view '" + name + "'");
-  if (!info->needs.empty() && !std::filesystem::exists(data / info->needs)) return std::nullopt;
+  const std::optional<std::filesystem::path> folder = folder_with(info.needs, data.string());
+  if (!folder) return std::nullopt;
 
   LoadOptions options;
-  options.data_directory = data;
-  const bool builtin = info->spec.starts_with("builtin:");
-  BenchView view{name, load_scene(builtin ? info->spec : (data / info->spec).string(), options, context), {}};
-  // Views of files show geometry alone: one diffuse material, as the papers' comparisons do.
-  if (!builtin) {
+  options.data_directory = *folder;
+  const bool builtin = info.spec.starts_with("builtin:");
+  BenchView view{name, load_scene(builtin ? info.spec : (*folder / info.spec).string(), options, context), {}};
+  // Most views of files show geometry alone: one diffuse material, as the papers' comparisons do.
+  if (!builtin && !info.own_materials) {
     view.scene.materials = {Material{}};
     for (Mesh& mesh : view.scene.meshes) mesh.materials = {MaterialId{std::size_t{0}}}, mesh.triangle_materials = {};
     for (Instance& instance : view.scene.instances) instance.material_override = {};
   }
   LightRequest lights;
-  lights.area = info->area_lights;
+  lights.area = info.area_lights, lights.point = info.point_lights, lights.directional = info.directional_lights;
+  if (!info.environment.empty()) lights.environment = (*folder / info.environment).string();
   apply_lights(view.scene, lights, context);
   ViewRequest request;
-  request.eye = info->eye, request.target = info->target;
-  if (info->fov_deg > 0) request.fov_deg = info->fov_deg;
+  request.eye = info.eye, request.target = info.target;
+  if (info.fov_deg > 0) request.fov_deg = info.fov_deg;
   view.camera = choose_camera(view.scene, request);
   return view;
 }
