@@ -238,7 +238,8 @@ void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, F
     return;
   }
   // Passes of the visibility lie at absolute multiples of their size, wherever those of the session begin and end.
-  const auto& bake = dynamic_cast<const DensityBake&>(*job.bake);
+  const std::unique_ptr<const Bake> own = job.bake ? nullptr : prepare(job, context);
+  const auto& bake = dynamic_cast<const DensityBake&>(job.bake ? *job.bake : *own);
   const std::uint32_t size = samples_a_pass(job);
   for (std::uint32_t begin = range.begin; begin < range.end;) {
     const std::uint32_t first = begin / size * size;

@@ -308,5 +308,25 @@ TEST(BidirectionalMis, WeightsOfAllStrategiesOfAPathAddUpToOne) {
   EXPECT_GE(longest, 6);
 }
 
+TEST(BidirectionalMis, LightsSeenDirectlyAreSharedWithTheLightImage) {
+  for (const bool power : {true, false}) {
+    const Heuristic h{power};
+    for (const double camera_pdf : {1e-3, 1.0, 50.0}) {
+      for (const double start : {1e-2, 3.0}) {
+        MisVertex hit;
+        hit.connect = 1;
+        arrive(hit, camera_pdf, 0.5, 1, 2);
+        const double by_eye = emission_weight(h, {0, start, 0}, hit, true);
+        const double by_light = connection_weight(h, hit.pdf, start, 1, 0, 1, 0);
+        EXPECT_NEAR(by_eye + by_light, 1, 1e-12);
+        EXPECT_NEAR(by_light, h(start) / (h(start) + h(camera_pdf * 0.25)), 1e-12);
+        // Without a light image the eye has it all.
+        hit.connect = 0;
+        EXPECT_EQ(emission_weight(h, {0, start, 0}, hit, true), 1);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline::bidirectional
