@@ -30,6 +30,22 @@ TEST(Scheduler, RendersAllSamplesOnce) {
   EXPECT_EQ(simulate({{30, 37}, {}, {}}, 5), std::pair(7u, StopReason::samples));
 }
 
+TEST(Scheduler, PassesBeginAtMultiplesOfAGroup) {
+  ScheduleLimits limits{{32, 100}, {}, {}, 16};
+  ScheduleState state;
+  state.next_sample = 32;
+  for (const double cost : {0.0, 0.001, 0.3, 20.0}) {
+    state.seconds_per_sample = cost;
+    for (const std::uint32_t next : {32u, 48u, 96u}) {
+      state.next_sample = next;
+      const ScheduledWork work = schedule(limits, state);
+      EXPECT_EQ(work.pass.begin, next);
+      EXPECT_TRUE(work.pass.end == 100 || work.pass.end % 16 == 0) << work.pass.end;
+      EXPECT_GT(work.pass.end, next);
+    }
+  }
+}
+
 TEST(Scheduler, StopsInTimeButNotBeforeThereIsAPicture) {
   const auto [samples, reason] = simulate({{0, 100000}, {}, 10.0}, 0.1);
   EXPECT_EQ(reason, StopReason::time_limit);
