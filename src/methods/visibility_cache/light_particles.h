@@ -36,7 +36,7 @@ std::vector<ParticleVertex> trace_particles(const World& world, const ParticleOp
 /// How many samples give about `wanted` results, at most `most`, where `found(first, count)` says how many results samples [first,
 /// first + count) give. Those samples must not be used again: a count that heeded the samples that are kept would be biased.
 template <class Found>
-std::size_t samples_for(std::size_t wanted, std::size_t most, Found&& found) {
+std::size_t samples_for(std::size_t wanted, std::size_t most, const Found& found) {
   constexpr std::size_t kEnough = 256;
   if (wanted == 0) return 0;
   std::size_t tried = 0, results = 0;
