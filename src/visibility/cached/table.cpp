@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
+#include <string>
+
+#include "base/core/error.h"
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -21,7 +23,9 @@ SlotTable::SlotTable(int bits) : bits_(bits) {
   // Aligned so that the system may back it with huge pages: look-ups go all over it.
   const std::size_t allocated = (bytes() + kHugePage - 1) / kHugePage * kHugePage;
   void* memory = std::aligned_alloc(kHugePage, allocated);
-  if (memory == nullptr) throw std::bad_alloc();
+  if (memory == nullptr)
+    throw resource_error("no memory for a visibility cache of " + std::to_string(bytes() >> 20) + " MiB")
+        .remedy("smaller table_bits or shared_table_bits");
 #ifdef MADV_HUGEPAGE
   (void)madvise(memory, allocated, MADV_HUGEPAGE);  // a wish; without it look-ups are a little slower
 #endif
