@@ -1,6 +1,8 @@
 // sightline bench visibility-cache
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/core/error.h"
 #include "base/settings/settings.h"
 #include "bench/visibility_cache/cache_bench.h"
@@ -49,7 +51,9 @@ int run_visibility_cache_bench(const CommandLine& line, Context& context) {
   if (!command.strip.empty() && results.strip)
     write_file(command.strip, encode_png(results.strip->width, results.strip->height, 3, to_srgb8(*results.strip)));
   if (command.json != "-" && command.markdown != "-" && command.html != "-") fmt::print("{}", markdown);
-  return kDone;
+  if (!results.json["interrupted"].get<bool>()) return kDone;
+  context.warn("interrupted: the results are those of the parts done so far");
+  return kInterrupted;
 }
 
 }  // namespace sightline::app

@@ -22,8 +22,8 @@ const std::vector<Variant>& variants() {
       {"scanline order, no refinement", {"order=scanline", "refine=none"}},
       {"floor normals", {"normals=floor"}},
       {"64 neighbours", {"refine=64"}},
-      {"counters, 1 ray", {"counters=1"}},
       {"counters, 2 rays", {"counters=2"}},
+      {"counters, 3 rays", {"counters=3"}},
       {"residual 0.05", {"residual=0.05"}},
       {"refinement at the light, 1 level", {"light_refine=1"}},
       {"hash: recurrence", {"hash=recurrence"}},
@@ -49,7 +49,7 @@ Json cache_ablations(const CacheView& view, const CacheBenchOptions& options, co
     requests.push_back(std::move(request));
   }
   const std::vector<Shot> shots = shoot_by_turns(view, requests, options.quick ? 1 : 3, context);
-  const std::vector<std::uint8_t> mask = surface_mask(view, 1, context);
+  const std::vector<std::uint8_t> mask = surface_mask(view, 1, {}, context);
   Json rows = Json::array();
   for (std::size_t i = 0; i < variants().size(); ++i) {
     Json row = {{"name", variants()[i].name}, {"settings", variants()[i].settings}};

@@ -64,6 +64,19 @@ class Plan {
   std::vector<std::string> views_;
 };
 
+void measure_view(const CacheView& view, const Plan& plan, const CacheBenchOptions& options, CacheBenchResults& results,
+                  const Context& context) {
+  Json& json = results.json;
+  if (plan.has("curves", view.name)) json["curves"].push_back(cache_curves(view, options, results.pictures, context));
+  if (plan.has("rivals", view.name)) {
+    json["equal_time"].push_back(cache_equal_time(view, options, context));
+    if (view.has_punctual) json["shadow_maps"].push_back(cache_shadow_maps(view, options, context));
+  }
+  if (plan.has("lookup", view.name)) json["lookup"].push_back(cache_lookup(view, options, context));
+  if (plan.has("flicker", view.name)) json["flicker"].push_back(cache_flicker(view, options, results.strip, context));
+  if (plan.has("ablations", view.name)) json["ablations"].push_back(cache_ablations(view, options, context));
+}
+
 }  // namespace
 
 std::vector<std::string> cache_bench_parts() {
@@ -75,25 +88,19 @@ std::vector<std::string> cache_bench_parts() {
 CacheBenchResults run_cache_bench(const CacheBenchOptions& options, const Context& context) {
   const Plan plan(options);
   CacheBenchResults results;
-  Json& json = results.json;
-  json = {{"sightline", kVersion},
-          {"suite", "visibility-cache"},
-          {"threads", context.thread_count()},
-          {"simd", simd_target_name()},
-          {"quick", options.quick}};
-  for (const char* part : {"curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations"}) json[part] = Json::array();
-  for (const std::string& name : plan.views()) {
-    context.check_cancelled();
-    const std::optional<CacheView> view = load_cache_view(name, options, context);
-    if (!view) continue;
-    if (plan.has("curves", name)) json["curves"].push_back(cache_curves(*view, options, results.pictures, context));
-    if (plan.has("rivals", name)) {
-      json["equal_time"].push_back(cache_equal_time(*view, options, context));
-      if (view->has_punctual) json["shadow_maps"].push_back(cache_shadow_maps(*view, options, context));
+  results.json = {{"sightline", kVersion},      {"suite", "visibility-cache"}, {"threads", context.thread_count()},
+                  {"simd", simd_target_name()}, {"quick", options.quick},      {"interrupted", false}};
+  for (const char* part : {"curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations"}) results.json[part] = Json::array();
+  try {
+    for (const std::string& name : plan.views()) {
+      context.check_cancelled();
+      if (const std::optional<CacheView> view = load_cache_view(name, options, context))
+        measure_view(*view, plan, options, results, context);
     }
-    if (plan.has("lookup", name)) json["lookup"].push_back(cache_lookup(*view, options, context));
-    if (plan.has("flicker", name)) json["flicker"].push_back(cache_flicker(*view, options, results.strip, context));
-    if (plan.has("ablations", name)) json["ablations"].push_back(cache_ablations(*view, options, context));
+  } catch (const Error& error) {
+    // What hours have measured is not thrown away.
+    if (error.code() != ErrorCode::interrupted) throw;
+    results.json["interrupted"] = true;
   }
   return results;
 }

@@ -37,7 +37,8 @@ struct CacheBenchResults {
   std::optional<ColorImage> strip;  ///< frames of the camera move: cached, exact, difference
 };
 
-/// Measures in this process. Views whose files are missing are left out with a warning.
+/// Measures in this process. Views whose files are missing are left out with a warning. When cancelled, what is complete by then is
+/// returned, with "interrupted": true.
 CacheBenchResults run_cache_bench(const CacheBenchOptions& options, const Context& context);
 /// The results as Markdown tables.
 std::string cache_bench_markdown(const nlohmann::ordered_json& results);

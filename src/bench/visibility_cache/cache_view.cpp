@@ -70,11 +70,12 @@ std::vector<Shot> shoot_by_turns(const CacheView& view, const std::vector<ShotRe
   return shots;
 }
 
-std::vector<std::uint8_t> surface_mask(const CacheView& view, int spp, const Context& context) {
+std::vector<std::uint8_t> surface_mask(const CacheView& view, int spp, std::optional<SampleRange> range, const Context& context) {
   RenderRequest request;
   request.method = "visibility-cache";
   request.visibility = "exact";
   request.spp = spp, request.light_samples = 1, request.max_bounces = 0;
+  request.sample_range = range;
   request.aovs.add(Aov::surface);
   const RenderResult result =
       render(view.world, view.camera, view.size_px, PixelFilter(PixelFilter::Kind::gaussian), request, context, Stopwatch());

@@ -47,7 +47,7 @@ Shot shoot(const CacheView& view, const ShotRequest& request, const Context& con
 /// The pictures by turns, each with the median of its times: one round, or three where `rounds` is 0 and a round takes under ten seconds.
 std::vector<Shot> shoot_by_turns(const CacheView& view, const std::vector<ShotRequest>& requests, int rounds, const Context& context);
 
-/// Pixels that count in errors: those whose samples all hit a surface that does not emit (docs/metrics.md).
-std::vector<std::uint8_t> surface_mask(const CacheView& view, int spp, const Context& context);
+/// Pixels that count in errors: those whose samples of the range, of `spp`, all hit a surface that does not emit (docs/metrics.md).
+std::vector<std::uint8_t> surface_mask(const CacheView& view, int spp, std::optional<SampleRange> range, const Context& context);
 
 }  // namespace sightline

@@ -48,7 +48,7 @@ Json cache_curves(const CacheView& view, const CacheBenchOptions& options, std::
     for (const double ce : edges) requests.push_back({.settings = {fmt::format("ce={}", ce)}, .spp = spp});
     const std::vector<Shot> shots = shoot_by_turns(view, requests, options.quick ? 1 : 0, context);
     const Shot& exact = shots.front();
-    const std::vector<std::uint8_t> mask = surface_mask(view, spp, context);
+    const std::vector<std::uint8_t> mask = surface_mask(view, spp, {}, context);
     const auto rays = static_cast<double>(exact.statistics.rays.closest + exact.statistics.rays.occlusion);
     Json rows = Json::array();
     for (std::size_t i = 1; i < shots.size(); ++i) {

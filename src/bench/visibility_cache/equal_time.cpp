@@ -14,6 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// More samples than so many times those of the cached picture are not given to anyone.
+constexpr int kMostTimes = 4;
+
 /// A way to render, with a number of samples to be fitted to a time.
 struct Rival {
   std::string name;
@@ -29,7 +32,7 @@ struct Fitted {
 // Time is not quite proportional to samples: the second guess starts from the first's time.
 Fitted fit(const CacheView& view, const Rival& rival, int spp, double budget_s, const Context& context) {
   int samples = rival.fewer_light_samples ? view.light_samples : spp;
-  const int most = rival.fewer_light_samples ? view.light_samples : 4 * spp;
+  const int most = rival.fewer_light_samples ? view.light_samples : kMostTimes * spp;
   Fitted fitted;
   for (int round = 0; round < 3; ++round) {
     ShotRequest request = rival.request;
@@ -63,16 +66,19 @@ Json cache_equal_time(const CacheView& view, const CacheBenchOptions& options, c
   std::vector<Fitted> fitted;
   for (const Rival& rival : rivals) fitted.push_back(fit(view, rival, spp, ours.seconds, context));
 
-  // Other samples than those compared.
-  const int total = spp * 4 + reference_spp;
-  const auto first = static_cast<std::uint32_t>((total - reference_spp + 15) / 16 * 16);
-  const Shot reference = shoot(view,
-                               {.visibility = "exact",
-                                .spp = static_cast<int>(first) + reference_spp,
-                                .range = SampleRange{first, first + static_cast<std::uint32_t>(reference_spp)},
-                                .direct_only = true},
-                               context);
-  const std::vector<std::uint8_t> mask = surface_mask(view, spp, context);
+  // Other samples than those compared, which may be up to kMostTimes as many.
+  const auto first = static_cast<std::uint32_t>((kMostTimes * spp + 15) / 16 * 16);
+  const int total = static_cast<int>(first) + reference_spp;
+  const SampleRange others{first, static_cast<std::uint32_t>(total)};
+  const Shot reference = shoot(view, {.visibility = "exact", .spp = total, .range = others, .direct_only = true}, context);
+  // What any of the pictures saw of a light or of the background does not count.
+  std::vector<std::uint8_t> mask = surface_mask(view, total, others, context);
+  int most_spp = spp;
+  for (const Fitted& one : fitted) most_spp = std::max(most_spp, one.spp);
+  for (const int used : {spp, most_spp}) {
+    const std::vector<std::uint8_t> own = surface_mask(view, used, {}, context);
+    for (std::size_t i = 0; i < mask.size(); ++i) mask[i] &= own[i];
+  }
   Json rows = Json::array();
   const auto add = [&](const std::string& name, const Shot& shot, int used_spp, int light_samples) {
     Json row = {{"name", name}, {"spp", used_spp}, {"light_samples", light_samples}, {"seconds", shot.seconds}};

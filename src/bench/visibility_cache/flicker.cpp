@@ -40,7 +40,7 @@ ColorImage halved(const ColorImage& image) {
   return half;
 }
 
-/// Frames side by side: cached, exact, and |difference| in false colours, where yellow is a tenth of the frame's mean.
+/// Frames side by side: cached, exact, and |difference| in false colours, where yellow is half of the frame's mean.
 class Strip {
  public:
   void add(const ColorImage& cached, const ColorImage& exact) {
@@ -50,7 +50,7 @@ class Strip {
     mean = std::max(1e-9, mean / static_cast<double>(exact.pixels.size()));
     for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
       const Color d = glm::abs(cached.pixels[i] - exact.pixels[i]);
-      const Color encoded = false_color(static_cast<float>((d.x + d.y + d.z) / 3 / (0.1 * mean)));
+      const Color encoded = false_color(static_cast<float>((d.x + d.y + d.z) / 3 / (0.5 * mean)));
       difference.pixels[i] = {linear_from_srgb(encoded.x), linear_from_srgb(encoded.y), linear_from_srgb(encoded.z)};
     }
     columns_.push_back({halved(cached), halved(exact), halved(difference)});
@@ -95,7 +95,7 @@ Json cache_flicker(CacheView view, const CacheBenchOptions& options, std::option
     traced += query_figures(cached.statistics.visibility).share_traced / frames;
     if (frame % std::max(1, frames / kStripFrames) == 0) pictures.add(cached.image, exact.image);
   }
-  strip = pictures.image();
+  if (!strip) strip = pictures.image();
   return {{"view", view.name},
           {"size", {view.size_px.x, view.size_px.y}},
           {"frames", frames},

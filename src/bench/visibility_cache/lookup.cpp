@@ -22,15 +22,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kWarmRounds = 5;
+constexpr int kRounds = 5;
 
-/// Sums over batches.
+/// Sums over batches of the medians of some rounds.
 struct Replay {
-  std::uint64_t queries = 0, lookups = 0;  ///< of warm calls
-  double warm_seconds = 0;
-  std::uint64_t warm_traced = 0;  ///< what the table could not keep
+  std::uint64_t queries = 0, lookups = 0, warm_traced = 0;  ///< of warm calls; rays for what the table could not keep
   std::uint64_t cold_misses = 0;
-  double cold_seconds = 0, miss_ray_seconds = 0;
+  double warm_seconds = 0, cold_seconds = 0, miss_ray_seconds = 0;
+};
+
+/// The times of one batch in each round.
+struct BatchTimes {
+  std::vector<double> cold, warm, rays;
 };
 
 double timed(const std::function<void()>& work) {
@@ -54,6 +57,14 @@ void touch(const QueryBatch& batch) {
   sink = sink + static_cast<float>(bits);
 }
 
+/// As many queries as were missed, from all over the batch.
+std::vector<std::uint32_t> spread_out(const QueryBatch& batch, std::uint64_t count) {
+  std::vector<std::uint32_t> which;
+  for (std::uint64_t k = 0; k < count; ++k)
+    which.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(batch.size - 1, k * batch.size / count)));
+  return which;
+}
+
 Replay replay(const std::vector<RecordedScope>& scopes, const CacheView& view, const std::vector<std::string>& settings,
               const Context& context) {
   const VisibilityInfo& info = find_visibility("cached");
@@ -64,38 +75,34 @@ Replay replay(const std::vector<RecordedScope>& scopes, const CacheView& view, c
   const std::unique_ptr<VisibilityWorker> worker = visibility->worker();
   QueryTracer tracer(*view.world);
   AlignedVector<float> weights;
-  std::vector<std::uint32_t> some;
   Replay sum;
   for (const RecordedScope& scope : scopes) {
     context.check_cancelled();
-    worker->begin(scope.scope);
-    for (const QueryBatch& batch : scope.batches) {
-      weights.resize(std::max(weights.size(), padded(batch.size) + kLanes));
-      RayCounts rays;
-      VisibilityCounts cold, settled, warm;
-      touch(batch);
-      const double cold_seconds = timed([&] { worker->visible(batch, weights, rays, cold); });
-      for (int round = 0; round < 8; ++round) {
-        const std::uint64_t before = settled.traced;
-        worker->visible(batch, weights, rays, settled);
-        if (settled.traced == before) break;
+    std::vector<BatchTimes> times(scope.batches.size());
+    for (int round = 0; round < kRounds; ++round) {
+      worker->begin(scope.scope);
+      for (std::size_t b = 0; b < scope.batches.size(); ++b) {
+        const QueryBatch& batch = scope.batches[b];
+        weights.resize(std::max(weights.size(), padded(batch.size) + kLanes));
+        RayCounts rays;
+        VisibilityCounts cold, settled, warm, traced;
+        touch(batch);
+        times[b].cold.push_back(timed([&] { worker->visible(batch, weights, rays, cold); }));
+        for (int again = 0; again < 8; ++again) {
+          const std::uint64_t before = settled.traced;
+          worker->visible(batch, weights, rays, settled);
+          if (settled.traced == before) break;
+        }
+        times[b].warm.push_back(timed([&] { worker->visible(batch, weights, rays, warm); }));
+        const std::vector<std::uint32_t> some = spread_out(batch, cold.traced);
+        times[b].rays.push_back(timed([&] { tracer.trace(batch, some, rays, traced); }));
+        if (round > 0) continue;
+        sum.queries += batch.size, sum.lookups += warm.lookups, sum.warm_traced += warm.traced, sum.cold_misses += cold.traced;
       }
-      std::vector<double> seconds;
-      for (int round = 0; round < kWarmRounds; ++round) {
-        const double one = timed([&] { worker->visible(batch, weights, rays, warm); });
-        seconds.push_back(one);
-      }
-      const double warm_seconds = median(seconds);
-      sum.queries += batch.size, sum.lookups += warm.lookups / kWarmRounds;
-      sum.warm_seconds += warm_seconds, sum.warm_traced += warm.traced / kWarmRounds;
-      if (cold.traced == 0) continue;
-      sum.cold_misses += cold.traced;
-      sum.cold_seconds += cold_seconds - warm_seconds;
-      // As many rays, of queries all over the batch, packed as misses are.
-      some.clear();
-      for (std::uint64_t k = 0; k < cold.traced; ++k)
-        some.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(batch.size - 1, k * batch.size / cold.traced)));
-      sum.miss_ray_seconds += timed([&] { tracer.trace(batch, some, rays, settled); });
+    }
+    for (const BatchTimes& batch : times) {
+      const double warm = median(batch.warm);
+      sum.warm_seconds += warm, sum.cold_seconds += median(batch.cold) - warm, sum.miss_ray_seconds += median(batch.rays);
     }
   }
   return sum;
@@ -119,7 +126,7 @@ Json lookup_row(const std::string& name, const std::vector<RecordedScope>& scope
           {"ns_per_miss_besides_ray", per(r.cold_seconds - r.miss_ray_seconds, r.cold_misses)}};
 }
 
-// The exact visibility on its own batches, and the same rays, made beforehand, in bare Embree calls.
+// The exact visibility on its own batches; the same rays, made beforehand, as a Tracer gets them; and in bare Embree calls.
 Json exact_row(const CacheView& view, std::uint64_t most, const Context& context) {
   const std::vector<RecordedScope> scopes = record_queries(view, "exact", {}, most, context);
   const std::unique_ptr<Visibility> visibility = find_visibility("exact").make(view.world, find_visibility("exact").settings, context);
@@ -128,12 +135,12 @@ Json exact_row(const CacheView& view, std::uint64_t most, const Context& context
   // Bare calls know neither instances nor alpha masks.
   const bool comparable = scenes && scenes->static_scene && !scenes->top_scene && !(scenes->masks && scenes->masks->any());
   constexpr std::array<CallStyle, 5> kStyles = {{{1, false}, {8, false}, {8, true}, {16, false}, {16, true}}};
+  constexpr std::size_t kExact = kStyles.size(), kTracer = kExact + 1;
   AlignedVector<float> weights;
   AlignedVector<std::uint8_t> blocked;
-  RayBatch batch_rays;
+  RayBatch made;
   std::uint64_t count = 0;
-  double ours = 0;
-  std::array<double, kStyles.size()> bare{};
+  std::array<double, kTracer + 1> total{};
   for (const RecordedScope& scope : scopes) {
     context.check_cancelled();
     worker->begin(scope.scope);
@@ -142,31 +149,40 @@ Json exact_row(const CacheView& view, std::uint64_t most, const Context& context
       blocked.resize(std::max(blocked.size(), padded(batch.size)));
       RayCounts rays;
       VisibilityCounts counts;
-      batch_rays.resize(batch.size);
-      for (std::size_t i = 0; i < batch.size; ++i) batch_rays.set(i, query_ray(batch, i));
-      // All by turns, each once for warming and three times for the median.
-      std::array<std::vector<double>, kStyles.size() + 1> seconds;
-      for (int round = 0; round < 4; ++round) {
-        const double one = timed([&] { worker->visible(batch, weights, rays, counts); });
-        if (round > 0) seconds.back().push_back(one);
-        for (std::size_t s = 0; s < kStyles.size() && comparable; ++s) {
-          const double other = timed([&] { bare_occluded(scenes->static_scene, batch_rays, blocked.data(), kStyles[s]); });
-          if (round > 0) seconds[s].push_back(other);
+      made.resize(batch.size);
+      for (std::size_t i = 0; i < batch.size; ++i) made.set(i, query_ray(batch, i));
+      const auto run = [&](std::size_t candidate) {
+        if (candidate == kExact) return worker->visible(batch, weights, rays, counts);
+        if (candidate == kTracer) return view.world->tracer().occluded(made, std::span(blocked), batch.kind, rays);
+        if (comparable) bare_occluded(scenes->static_scene, made, blocked.data(), kStyles[candidate]);
+      };
+      // All by turns; the first round warms up.
+      std::array<std::vector<double>, kTracer + 1> seconds;
+      for (int round = 0; round <= kRounds; ++round) {
+        for (std::size_t c = 0; c < seconds.size(); ++c) {
+          const double one = timed([&] { run(c); });
+          if (round > 0) seconds[c].push_back(one);
         }
       }
       count += batch.size;
-      ours += median(seconds.back());
-      for (std::size_t s = 0; s < kStyles.size() && comparable; ++s) bare[s] += median(seconds[s]);
+      for (std::size_t c = 0; c < seconds.size(); ++c) total[c] += median(seconds[c]);
     }
   }
+  if (count == 0) return {{"rays", 0}};
   const double rate = static_cast<double>(count) * 1e-6;
-  Json json = {{"rays", count}, {"exact_mray_per_s", ours > 0 ? rate / ours : 0}, {"exact_ns_per_query", per(ours, count)}};
-  if (!comparable || count == 0) return json;
-  const auto best = std::min_element(bare.begin(), bare.end());
-  const CallStyle style = kStyles[static_cast<std::size_t>(best - bare.begin())];
+  Json json = {{"rays", count},
+               {"exact_mray_per_s", rate / total[kExact]},
+               {"exact_ns_per_query", per(total[kExact], count)},
+               {"tracer_mray_per_s", rate / total[kTracer]}};
+  if (!comparable) return json;
+  const auto best = std::min_element(total.begin(), total.begin() + kExact);
+  const auto text = [](CallStyle style) {
+    return fmt::format("{}{}", style.width, style.width == 1 ? "" : style.coherent ? " coherent" : " incoherent");
+  };
   json["bare_mray_per_s"] = rate / *best;
-  json["bare_style"] = fmt::format("{}{}", style.width, style.width == 1 ? "" : style.coherent ? " coherent" : " incoherent");
-  json["throughput_kept"] = *best / ours;
+  json["bare_style"] = text(kStyles[static_cast<std::size_t>(best - total.begin())]);
+  json["throughput_kept"] = *best / total[kExact];
+  for (std::size_t c = 0; c < kStyles.size(); ++c) json["bare_all"][text(kStyles[c])] = rate / total[c];
   return json;
 }
 

@@ -97,7 +97,7 @@ std::string cache_bench_html(const CacheBenchResults& results) {
     GallerySection section{.title = "Camera move", .figure = flicker};
     if (results.strip)
       section.items.push_back(
-          {.title = "Frames", .caption = "From the top: cached, exact, difference (yellow: a tenth of the mean)", .image = *results.strip});
+          {.title = "Frames", .caption = "From the top: cached, exact, difference (yellow: half of the mean)", .image = *results.strip});
     page.sections.push_back(std::move(section));
   }
   add("Ablations", tables(json, "ablations"));

@@ -19,7 +19,7 @@ nlohmann::ordered_json cache_equal_time(const CacheView& view, const CacheBenchO
 nlohmann::ordered_json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, const Context& context);
 /// Nanoseconds a query and a miss on the view's own batches; the exact path beside bare Embree.
 nlohmann::ordered_json cache_lookup(const CacheView& view, const CacheBenchOptions& options, const Context& context);
-/// A camera move: flicker, frames a second, and a strip of frames.
+/// A camera move: flicker, frames a second, and a strip of frames unless there is one already.
 nlohmann::ordered_json cache_flicker(CacheView view, const CacheBenchOptions& options, std::optional<ColorImage>& strip,
                                      const Context& context);
 /// What single choices cost and give.

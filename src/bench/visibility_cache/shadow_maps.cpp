@@ -19,7 +19,7 @@ Json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, 
         shoot_by_turns(view, {{.visibility = "exact", .spp = spp}, {.settings = {fmt::format("ce={}", kEdge)}, .spp = spp}},
                        options.quick ? 1 : 0, context);
     const Shot &exact = shots[0], &cached = shots[1];
-    const std::vector<std::uint8_t> mask = surface_mask(view, spp, context);
+    const std::vector<std::uint8_t> mask = surface_mask(view, spp, {}, context);
     const auto row_of = [&](const std::string& name, const Shot& shot) {
       const VisibilityCounts& counts = shot.statistics.visibility;
       Json row = {{"name", name},
