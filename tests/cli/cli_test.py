@@ -766,6 +766,62 @@ class Info(ProgramTest):
         self.fails(3, "render", "missing\nname.obj", "-o", "a.exr", says="missing")
 
 
+class Bench(ProgramTest):
+    SMALL = ("bench", "visibility-cache", "--quick", "--view", "builtin:cornell", "--size", "48x40", "--threads", 2)
+
+    def test_all_parts_of_the_visibility_cache_suite(self):
+        self.ok(*self.SMALL, "--ce", "8", "--spp", "1,2", "--json", "a.json", "--markdown", "a.md", "--html", "a.html", "--strip", "a.png")
+        results = self.json("a.json")
+        self.assertEqual((results["suite"], results["threads"], results["quick"], results["interrupted"]), ("visibility-cache", 2, True, False))
+        curves = results["curves"][0]
+        self.assertEqual((curves["view"], curves["size"]), ("builtin:cornell", [48, 40]))
+        self.assertEqual([sample["spp"] for sample in curves["samples"]], [1, 2])
+        rows = [row for sample in curves["samples"] for row in sample["cached"]] + results["ablations"][0]["rows"]
+        for row in rows:
+            self.assertGreater(row["share_traced"], 0, row)
+            self.assertLessEqual(row["share_traced"], 1, row)
+            for key in ("linf", "flip", "l2", "signed_error", "seconds", "speed_up", "lookups_per_query"):
+                self.assertTrue(math.isfinite(row[key]), (key, row))
+            self.assertLess(abs(row["signed_error"]), row["linf"] + 1e-9)
+            self.assertLess(row["linf"], 0.5, row)
+            self.assertAlmostEqual(row["ray_reduction"], 1 / row["share_traced"] - 1, 6)
+        equal_time = results["equal_time"][0]["rows"]
+        self.assertEqual(len(equal_time), 5)
+        self.assertTrue(all(math.isfinite(row["linf"]) and row["spp"] >= 1 and row["light_samples"] >= 1 for row in equal_time))
+        self.assertEqual(results["shadow_maps"], [])
+        lookup = results["lookup"][0]
+        self.assertGreater(lookup["exact"]["bare_mray_per_s"], 0)
+        for row in lookup["rows"]:
+            self.assertGreater(row["ns_per_query"], 0)
+            self.assertGreater(row["misses"], 0)
+        depth_0, refined = lookup["rows"][:2]
+        self.assertEqual(depth_0["lookups_per_query"], 1)
+        self.assertGreater(refined["lookups_per_query"], 1)
+        self.assertLessEqual(0, results["flicker"][0]["flicker"])
+        self.assertLess(results["flicker"][0]["flicker"], 0.5)
+        self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (6 * 24, 3 * 20))
+        page = (self.folder / "a.html").read_text()
+        self.assertGreaterEqual(page.count("<svg"), 9)
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
+        self.assertIn("### Ablations", (self.folder / "a.md").read_text())
+
+    def test_one_part_alone(self):
+        results = json.loads(self.ok(*self.SMALL, "--part", "flicker", "--json", "-").out)
+        self.assertEqual([key for key in ("curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations") if results[key]], ["flicker"])
+
+    def test_wrong_names_and_missing_data(self):
+        self.fails(2, "bench", "visibility-cach", says="visibility-cache")
+        self.fails(2, "bench", "visibility-cache", "--part", "curve", says="curves")
+        self.fails(2, "bench", "visibility-cache", "--view", "sponza-curt", says="sponza-court")
+        self.fails(2, "bench", "visibility-cache", "--ce", "0")
+        self.fails(2, "bench", "visibility-cache", "--spp", "1,x")
+        self.fails(2, "bench", "trace", "--part", "curves", says="visibility-cache")
+        self.fails(2, "bench", "visibility-cache", "--json", "missing/a.json", says="missing")
+        run = self.ok("bench", "visibility-cache", "--view", "kitchen", "--data", ".", "--json", "-")
+        self.assertIn("kitchen", run.err)
+        self.assertEqual(json.loads(run.out)["curves"], [])
+
+
 def groups():
     return sorted(name for name, value in globals().items() if isinstance(value, type) and issubclass(value, ProgramTest) and value is not ProgramTest)
 
