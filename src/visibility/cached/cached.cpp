@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "visibility/cached/core.h"
+#include "visibility/cached/separate_wave.h"
 #include "visibility/cached/wave.h"
 #include "visibility/cached/worker.h"
 
@@ -26,7 +27,7 @@ class CachedVisibility final : public Visibility {
   std::unique_ptr<VisibilityWorker> worker() override { return std::make_unique<CachedWorker>(core_); }
   std::unique_ptr<VisibilityWave> wave(std::size_t slots) override {
     const CachedVisibilitySettings& s = core_->settings;
-    if (s.scope == CacheScope::tile) return Visibility::wave(slots);
+    if (s.scope == CacheScope::tile) return std::make_unique<SeparateWave>(core_, slots);
     const std::lock_guard lock(mutex_);
     if (!shared_) {
       shared_ = std::make_shared<SharedTable>(s.shared_table_bits);

@@ -83,7 +83,7 @@ void expect_equal(const Pass& a, const Pass& b) {
 TEST(CachedWave, AnswersDoNotDependOnThreads) {
   const auto world = soup_world();
   for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
-           {"ce=12"}, {"ce=12", "shared_table_bits=11"}, {"ce=12", "residual=0.2"}, {"ce=12", "counters=2"}}) {
+           {"ce=12"}, {"ce=12", "shared_table_bits=11"}, {"ce=12", "scope=tile"}, {"ce=12", "residual=0.2"}, {"ce=12", "counters=2"}}) {
     for (const QuerySplit split : {QuerySplit::symmetric, QuerySplit::eye}) {
       const Pass one = run(Cache(world, settings), 1, split);
       for (const int threads : {2, 7}) expect_equal(run(Cache(world, settings), threads, split), one);
