@@ -10,10 +10,10 @@ Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i
 
 /// f cos of a surface for two world directions. Reflection by the shading normal must be reflection by the geometric one, else light would
 /// leak through the surface.
-BsdfEval evaluate(const Bsdf& bsdf, const Frame3& frame, const Vec3& geometric, const Vec3& wo, const Vec3& wi, TransportMode mode) {
+BsdfEval evaluate(const Bsdf& bsdf, const Frame3& frame, const Vec3& geometric, const Vec3& wo, const Vec3& wi) {
   const Vec3 wo_local = frame.to_local(wo), wi_local = frame.to_local(wi);
   if ((wo_local.z * wi_local.z > 0) != (glm::dot(wo, geometric) * glm::dot(wi, geometric) > 0)) return {};
-  return bsdf.evaluate(wo_local, wi_local, mode);
+  return bsdf.evaluate(wo_local, wi_local);
 }
 
 void append(const Color& color, std::uint32_t eye_index, std::uint32_t light, Contributions& out) {
@@ -28,7 +28,7 @@ void append(const Color& color, std::uint32_t eye_index, std::uint32_t light, Co
 Color sample_contribution(const EyeSample& eye, const LightSampleBatch& lights, std::size_t lane, const SampleWeights& weights) {
   const float pdf = lights.pdf[lane];
   if (!(pdf > 0)) return Color(0);
-  const BsdfEval eval = evaluate(eye.bsdf, eye.frame, eye.geometric_normal, eye.wo, load(lights.wi, lane), TransportMode::radiance);
+  const BsdfEval eval = evaluate(eye.bsdf, eye.frame, eye.geometric_normal, eye.wo, load(lights.wi, lane));
   float scale = weights.scale / pdf;
   if (weights.mis_bsdf > 0) scale *= weights.mis_light * pdf / (weights.mis_light * pdf + weights.mis_bsdf * eval.pdf);
   return eye.weight * eval.f_cos * load(lights.radiance, lane) * scale;
@@ -39,18 +39,15 @@ Color virtual_light_contribution(const EyeSample& eye, const VirtualPointLights&
   const float squared = glm::dot(to, to);
   if (!(squared > 0)) return Color(0);
   const Vec3 wi = to / std::sqrt(squared), normal = load(lights.normal, j);
-  const BsdfEval at_eye = evaluate(eye.bsdf, eye.frame, eye.geometric_normal, eye.wo, wi, TransportMode::radiance);
+  const BsdfEval at_eye = evaluate(eye.bsdf, eye.frame, eye.geometric_normal, eye.wo, wi);
   if (is_black(at_eye.f_cos)) return Color(0);
-  // f_cos holds the eye's cosine; the light's comes out of its own f cos, where the arriving light's cosine is part of the flux.
+  // f_cos holds the eye's cosine.
   const float cos_eye = std::fabs(glm::dot(wi, eye.frame.normal)), cos_sent = std::fabs(glm::dot(wi, normal));
   const float geometry = cos_eye * cos_sent / squared;
   const float clamped = geometry > lights.max_geometry_term ? lights.max_geometry_term / geometry : 1.f;
-  if (lights.lambert[j]) {
-    if (!(glm::dot(wi, normal) < 0)) return Color(0);
-    return eye.weight * at_eye.f_cos * load(lights.radiosity, j) * (clamped * cos_sent / squared);
-  }
-  const BsdfEval sent = evaluate(lights.bsdf[j], lights.frame[j], normal, lights.wi[j], -wi, TransportMode::importance);
-  return eye.weight * at_eye.f_cos * sent.f_cos * load(lights.flux, j) * (clamped / squared);
+  const Color sent =
+      lights.lambert[j] ? (glm::dot(wi, normal) < 0 ? load(lights.radiosity, j) : Color(0)) : radiance_towards(lights, j, -wi);
+  return eye.weight * at_eye.f_cos * sent * (clamped * cos_sent / squared);
 }
 
 void add_samples(const EyeSample& eye, std::uint32_t eye_index, const LightSampleBatch& lights, std::size_t first, std::size_t count,
