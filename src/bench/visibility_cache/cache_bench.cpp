@@ -4,6 +4,7 @@
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
+#include "bench/visibility_cache/aims.h"
 #include "bench/visibility_cache/cache_view.h"
 #include "bench/visibility_cache/parts.h"
 #include "sightline/version.h"
@@ -102,6 +103,7 @@ CacheBenchResults run_cache_bench(const CacheBenchOptions& options, const Contex
     if (error.code() != ErrorCode::interrupted) throw;
     results.json["interrupted"] = true;
   }
+  results.json["aims"] = cache_bench_aims(results.json);
   return results;
 }
 

@@ -3,9 +3,16 @@
 
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
+#include "bench/visibility_cache/thumbnail.h"
 #include "image/metrics/metrics.h"
 
 namespace sightline {
+namespace {
+
+// Pictures of the page: enough to see shadows by, and some hundred kilobytes each.
+constexpr int kPageWidth = 800;
+
+}  // namespace
 
 using Json = nlohmann::ordered_json;
 
@@ -66,8 +73,9 @@ Json cache_curves(const CacheView& view, const CacheBenchOptions& options, std::
     if (spp != samples.back()) continue;
     // The middle of the range beside the truth.
     const std::size_t shown = (edges.size() + 1) / 2;
-    pictures.push_back({view.name + ", exact", fmt::format("{} samples a pixel", spp), exact.image});
-    pictures.push_back({view.name + ", cached", fmt::format("{} samples a pixel, C_E = {}", spp, edges[shown - 1]), shots[shown].image});
+    pictures.push_back({view.name + ", exact", fmt::format("{} samples a pixel", spp), thumbnail(exact.image, kPageWidth)});
+    pictures.push_back({view.name + ", cached", fmt::format("{} samples a pixel, C_E = {}", spp, edges[shown - 1]),
+                        thumbnail(shots[shown].image, kPageWidth)});
   }
   return json;
 }

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
+#include "bench/visibility_cache/thumbnail.h"
 #include "image/false_color.h"
 #include "image/metrics/metrics.h"
 #include "image/tone_map.h"
@@ -25,19 +27,6 @@ Camera moved(Camera camera, float distance) {
   const Vec3 step = distance * glm::normalize(forward + 0.3f * right);
   camera.world_from_camera[3] += Vec4(step, 0);
   return camera;
-}
-
-// Half the size, by means of 2x2 pixels.
-ColorImage halved(const ColorImage& image) {
-  ColorImage half(std::max(1, image.width / 2), std::max(1, image.height / 2));
-  for (int y = 0; y < half.height; ++y) {
-    for (int x = 0; x < half.width; ++x) {
-      Color sum(0);
-      for (int k = 0; k < 4; ++k) sum += image.at(std::min(2 * x + k % 2, image.width - 1), std::min(2 * y + k / 2, image.height - 1));
-      half.at(x, y) = 0.25f * sum;
-    }
-  }
-  return half;
 }
 
 /// Frames side by side: cached, exact, and |difference| in false colours, where yellow is half of the frame's mean.

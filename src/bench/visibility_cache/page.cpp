@@ -82,6 +82,7 @@ std::string cache_bench_html(const CacheBenchResults& results) {
   const auto add = [&](const char* title, const std::string& figure) {
     if (!figure.empty()) page.sections.push_back({.title = title, .figure = figure});
   };
+  add("Aims", tables(json, "aims"));
   add("Figures", tables(json, "curves"));
   std::string bars;
   for (const Json& view : json["equal_time"]) bars += error_bars(view["rows"], "Equal time: " + view["view"].get<std::string>());

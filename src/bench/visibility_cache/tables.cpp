@@ -34,6 +34,20 @@ std::string seconds(const Json& json) {
 std::string text(const Json& json) { return json.is_string() ? json.get<std::string>() : json.dump(); }
 std::string size_text(const Json& json) { return fmt::format("{}x{}", json[0].get<int>(), json[1].get<int>()); }
 
+std::vector<BenchTable> aim_tables(const Json& rows) {
+  BenchTable table{.title = "Aims",
+                   .note = "For pictures of the views' own size; small pictures have more edges and fewer pixels to share.",
+                   .header = {"figure", "measured", "aim", "met"}};
+  for (const Json& row : rows) {
+    const bool is_share = row["percent"].get<bool>();
+    const auto shown = [&](const Json& value) { return is_share ? percent(value) : fixed(value, number(value) < 1 ? 4 : 2); };
+    table.rows.push_back({text(row["figure"]), shown(row["measured"]),
+                          (row["at_most"].get<bool>() ? "at most " : "at least ") + shown(row["aim"]),
+                          row["met"].get<bool>() ? "yes" : "no"});
+  }
+  return {table};
+}
+
 std::vector<BenchTable> curve_tables(const Json& views) {
   BenchTable table{.title = "Range of C_E",
                    .note =
@@ -146,6 +160,7 @@ std::vector<BenchTable> ablation_tables(const Json& views) {
 std::vector<BenchTable> cache_bench_tables(const Json& results, const std::string& part) {
   if (!results.contains(part) || results[part].empty()) return {};
   const Json& views = results[part];
+  if (part == "aims") return aim_tables(views);
   if (part == "curves") return curve_tables(views);
   if (part == "equal_time") return equal_time_tables(views);
   if (part == "shadow_maps") return shadow_map_tables(views);
@@ -182,7 +197,7 @@ std::string html_table(const BenchTable& table) {
 
 std::string cache_bench_markdown(const Json& results) {
   std::string text;
-  for (const char* part : {"curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations"}) {
+  for (const char* part : {"aims", "curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations"}) {
     for (const BenchTable& table : cache_bench_tables(results, part)) text += markdown_table(table);
   }
   return text;

@@ -14,8 +14,8 @@ struct BenchTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// Tables of one part of the results of run_cache_bench ("curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations"); empty
-/// where it has none.
+/// Tables of one part of the results of run_cache_bench ("aims", "curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations");
+/// empty where it has none.
 std::vector<BenchTable> cache_bench_tables(const nlohmann::ordered_json& results, const std::string& part);
 
 std::string markdown_table(const BenchTable& table);

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "bench/visibility_cache/aims.h"
 #include "bench/visibility_cache/cache_bench.h"
 
 namespace sightline {
@@ -53,6 +54,40 @@ TEST(CacheTables, ThePageHasTheFourChartsAndEscapesNames) {
   EXPECT_EQ(charts, 4u);
   EXPECT_NE(page.find("a&lt;b"), std::string::npos);
   EXPECT_EQ(page.find("a<b"), std::string::npos);
+}
+
+TEST(CacheAims, OnlyWhatWasMeasuredIsJudged) {
+  Json json = results_with_one_curve(49);
+  EXPECT_TRUE(cache_bench_aims(json).empty());
+  json["curves"][0]["view"] = "conference-9";
+  const Json aims = cache_bench_aims(json);
+  ASSERT_EQ(aims.size(), 2u);
+  // 2 % of at most 7 % traced, but 1.25 % of at most 1 % error.
+  EXPECT_TRUE(aims[0]["met"].get<bool>()) << aims;
+  EXPECT_FALSE(aims[1]["met"].get<bool>()) << aims;
+}
+
+TEST(CacheAims, TheCacheIsHeldAgainstTheBestShadowMap) {
+  Json json = results_with_one_curve(49);
+  const auto row = [](double flip) { return Json{{"name", "x"}, {"flip", flip}}; };
+  json["shadow_maps"].push_back(
+      {{"view", "v"}, {"ce", 14}, {"samples", {{{"spp", 1}, {"rows", {row(0), row(0.02), row(0.03), row(0.01)}}}}}});
+  const Json aims = cache_bench_aims(json);
+  ASSERT_EQ(aims.size(), 1u);
+  EXPECT_EQ(aims[0]["aim"], 0.01);
+  EXPECT_FALSE(aims[0]["met"].get<bool>());
+}
+
+TEST(CacheAims, SpeedCountsOnlyWhereTheErrorIsSmall) {
+  Json json = results_with_one_curve(49);
+  json["curves"][0]["view"] = "kitchen-vpl";
+  Json& rows = json["curves"][0]["samples"][0]["cached"];
+  rows.push_back(rows[0]);
+  rows[1]["ce"] = 64, rows[1]["speed_up"] = 9, rows[1]["linf"] = 0.2;
+  const Json aims = cache_bench_aims(json);
+  ASSERT_EQ(aims.size(), 1u);
+  EXPECT_EQ(aims[0]["measured"], 2.0);
+  EXPECT_TRUE(aims[0]["met"].get<bool>());
 }
 
 }  // namespace

@@ -1,0 +1,130 @@
+#include "bench/visibility_cache/aims.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace sightline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Aims {
+ public:
+  void at_most(const std::string& figure, const Json& measured, double aim, bool percent = true) {
+    add(figure, measured, aim, true, percent);
+  }
+  void at_least(const std::string& figure, const Json& measured, double aim, bool percent = false) {
+    add(figure, measured, aim, false, percent);
+  }
+  Json take() { return std::move(rows_); }
+
+ private:
+  void add(const std::string& figure, const Json& measured, double aim, bool at_most, bool percent) {
+    if (!measured.is_number()) return;
+    const double value = measured.get<double>();
+    rows_.push_back({{"figure", figure},
+                     {"measured", value},
+                     {"aim", aim},
+                     {"at_most", at_most},
+                     {"percent", percent},
+                     {"met", at_most ? value <= aim : value >= aim}});
+  }
+  Json rows_ = Json::array();
+};
+
+/// Rows of the curves of one view and number of samples a pixel; null where they were not measured.
+Json rows_of(const Json& results, const std::string& view, int spp) {
+  for (const Json& curves : results["curves"]) {
+    if (curves["view"] != view) continue;
+    for (const Json& sample : curves["samples"]) {
+      if (sample["spp"] == spp) return sample["cached"];
+    }
+  }
+  return {};
+}
+
+Json row_of(const Json& results, const std::string& view, int spp, double ce) {
+  for (const Json& row : rows_of(results, view, spp)) {
+    if (row["ce"] == ce) return row;
+  }
+  return {};
+}
+
+std::string place(const std::string& view, int spp, double ce) { return fmt::format("{}, C_E {}, {} spp", view, ce, spp); }
+
+void rays(const Json& results, const std::string& view, int spp, double ce, double share, std::optional<double> error, Aims& aims) {
+  const Json row = row_of(results, view, spp, ce);
+  if (row.is_null()) return;
+  aims.at_most(place(view, spp, ce) + ": traced", row["share_traced"], share);
+  if (error) aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], *error);
+}
+
+void speed(const Json& results, const std::string& view, int spp, double ce, double speed_up, double error, Aims& aims) {
+  const Json row = row_of(results, view, spp, ce);
+  if (row.is_null()) return;
+  aims.at_least(place(view, spp, ce) + ": speed-up", row["speed_up"], speed_up);
+  aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], error);
+}
+
+// The fastest whose error is small enough.
+void best_speed(const Json& results, const std::string& view, int spp, double speed_up, double error, Aims& aims) {
+  std::optional<Json> best;
+  for (const Json& row : rows_of(results, view, spp)) {
+    if (!(row["linf"].get<double>() <= error)) continue;
+    if (!best || row["speed_up"] > (*best)["speed_up"]) best = row;
+  }
+  if (best)
+    aims.at_least(
+        fmt::format("{}, the best with L^INF of at most {} %: speed-up", place(view, spp, (*best)["ce"].get<double>()), 100 * error),
+        (*best)["speed_up"], speed_up);
+}
+
+void shadow_maps(const Json& results, Aims& aims) {
+  for (const Json& view : results["shadow_maps"]) {
+    for (const Json& sample : view["samples"]) {
+      const Json& rows = sample["rows"];
+      if (rows.size() < 3) continue;
+      double least = rows[2]["flip"].get<double>();
+      for (std::size_t i = 3; i < rows.size(); ++i) least = std::min(least, rows[i]["flip"].get<double>());
+      aims.at_most(fmt::format("{}: FLIP; the aim is the best shadow map's",
+                               place(view["view"].get<std::string>(), sample["spp"].get<int>(), view["ce"].get<double>())),
+                   rows[1]["flip"], least, false);
+    }
+  }
+}
+
+}  // namespace
+
+Json cache_bench_aims(const Json& results) {
+  Aims aims;
+  rays(results, "sponza-points", 16, 36, 0.02, 0.01, aims);
+  for (const char* view : {"sponza-court", "conference-9"}) {
+    rays(results, view, 16, 64, 0.04, {}, aims);
+    rays(results, view, 1, 8, 0.07, 0.01, aims);
+  }
+  for (const int spp : {1, 9, 16}) best_speed(results, "kitchen-vpl", spp, 2, 0.03, aims);
+  speed(results, "hairball-open", 1, 16, 1.7, 0.07, aims);
+  speed(results, "hairball-open", 16, 64, 2.5, 0.07, aims);
+  shadow_maps(results, aims);
+  for (const Json& view : results["lookup"]) {
+    const std::string name = view["view"].get<std::string>();
+    for (const Json& row : view["rows"]) {
+      const bool refined = row["lookups_per_query"] > 1;
+      aims.at_most(fmt::format("{}, {}: ns a query", name, row["name"].get<std::string>()), row["ns_per_query"], refined ? 12 : 5, false);
+    }
+    if (view["exact"].contains("throughput_kept"))
+      aims.at_least(name + ": exact path of the bare calls' throughput", view["exact"]["throughput_kept"], 0.9, true);
+  }
+  for (const Json& view : results["flicker"]) {
+    const std::string name = view["view"].get<std::string>();
+    aims.at_most(name + ": flicker", view["flicker"], 0.01);
+    aims.at_least(name + ": cached frames a second", view["cached_frames_per_second"], 4);
+  }
+  return aims.take();
+}
+
+}  // namespace sightline

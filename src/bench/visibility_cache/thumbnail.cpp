@@ -1,0 +1,24 @@
+#include "bench/visibility_cache/thumbnail.h"
+
+#include <algorithm>
+
+namespace sightline {
+
+ColorImage halved(const ColorImage& image) {
+  ColorImage half(std::max(1, image.width / 2), std::max(1, image.height / 2));
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      Color sum(0);
+      for (int k = 0; k < 4; ++k) sum += image.at(std::min(2 * x + k % 2, image.width - 1), std::min(2 * y + k / 2, image.height - 1));
+      half.at(x, y) = 0.25f * sum;
+    }
+  }
+  return half;
+}
+
+ColorImage thumbnail(ColorImage image, int width_px) {
+  while (image.width > std::max(1, width_px)) image = halved(image);
+  return image;
+}
+
+}  // namespace sightline

@@ -1,0 +1,13 @@
+// Smaller pictures for pages and strips.
+#pragma once
+
+#include "image/image.h"
+
+namespace sightline {
+
+/// Half the size, by means of 2x2 pixels.
+ColorImage halved(const ColorImage& image);
+/// Halved until it is at most `width_px` wide.
+ColorImage thumbnail(ColorImage image, int width_px);
+
+}  // namespace sightline
