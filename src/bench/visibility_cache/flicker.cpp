@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
@@ -29,7 +30,7 @@ Camera moved(Camera camera, float distance) {
   return camera;
 }
 
-/// Frames side by side: cached, exact, and |difference| in false colours, where yellow is half of the frame's mean.
+/// Frames side by side: cached, exact (both exposed for looking at), and |difference| in false colours: yellow is half of the frame's mean.
 class Strip {
  public:
   void add(const ColorImage& cached, const ColorImage& exact) {
@@ -42,7 +43,8 @@ class Strip {
       const Color encoded = false_color(static_cast<float>((d.x + d.y + d.z) / 3 / (0.5 * mean)));
       difference.pixels[i] = {linear_from_srgb(encoded.x), linear_from_srgb(encoded.y), linear_from_srgb(encoded.z)};
     }
-    columns_.push_back({halved(cached), halved(exact), halved(difference)});
+    if (columns_.empty()) scale_ = std::exp2(viewing_exposure(exact));
+    columns_.push_back({halved(scaled(cached)), halved(scaled(exact)), halved(difference)});
   }
   std::optional<ColorImage> image() const {
     if (columns_.empty()) return std::nullopt;
@@ -58,7 +60,13 @@ class Strip {
   }
 
  private:
+  ColorImage scaled(ColorImage image) const {
+    for (Color& c : image.pixels) c *= scale_;
+    return image;
+  }
+
   std::vector<std::array<ColorImage, 3>> columns_;
+  float scale_ = 1;
 };
 
 }  // namespace

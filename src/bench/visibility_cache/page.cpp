@@ -7,7 +7,11 @@
 
 #include "bench/visibility_cache/cache_bench.h"
 #include "bench/visibility_cache/tables.h"
+#include "bench/visibility_cache/thumbnail.h"
+#include "image/io/image_io.h"
+#include "image/tone_map.h"
 #include "report/chart.h"
+#include "report/html.h"
 #include "report/index_report.h"
 
 namespace sightline {
@@ -68,6 +72,14 @@ std::string error_bars(const Json& rows, const std::string& title) {
   return bar_chart(bars, {.title = title, .x_label = "mean FLIP"});
 }
 
+std::string strip_figure(const ColorImage& strip) {
+  const std::vector<std::byte> png = encode_png(strip.width, strip.height, 3, to_srgb8(strip));
+  return fmt::format(
+      "<p>Frames, from the top: cached, exact, difference (yellow: half of the mean).</p>\n<img src=\"{}\" width=\"{}\" "
+      "height=\"{}\" alt=\"frames of the camera move\">\n",
+      data_uri("image/png", png), strip.width, strip.height);
+}
+
 }  // namespace
 
 std::string cache_bench_html(const CacheBenchResults& results) {
@@ -94,18 +106,16 @@ std::string cache_bench_html(const CacheBenchResults& results) {
   }
   add("Shadow maps", bars + tables(json, "shadow_maps"));
   add("Cost of a look-up", tables(json, "lookup"));
-  if (const std::string flicker = tables(json, "flicker"); !flicker.empty()) {
-    GallerySection section{.title = "Camera move", .figure = flicker};
-    if (results.strip)
-      section.items.push_back(
-          {.title = "Frames", .caption = "From the top: cached, exact, difference (yellow: half of the mean)", .image = *results.strip});
-    page.sections.push_back(std::move(section));
-  }
+  add("Camera move", tables(json, "flicker") + (results.strip ? strip_figure(*results.strip) : ""));
   add("Ablations", tables(json, "ablations"));
   if (!results.pictures.empty()) {
-    GallerySection section{.title = "Pictures"};
-    for (const BenchPicture& picture : results.pictures)
-      section.items.push_back({.title = picture.title, .caption = picture.caption, .image = picture.image});
+    GallerySection section{.title = "Pictures", .text = "Exposed for looking at; errors are taken without."};
+    float exposure = 0;
+    for (const BenchPicture& picture : results.pictures) {
+      // The cached picture after it alike.
+      if (picture.title.ends_with("exact")) exposure = viewing_exposure(picture.image);
+      section.items.push_back({.title = picture.title, .caption = picture.caption, .image = picture.image, .exposure_ev = exposure});
+    }
     page.sections.push_back(std::move(section));
   }
   return index_report(page);

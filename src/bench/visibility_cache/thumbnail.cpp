@@ -1,6 +1,7 @@
 #include "bench/visibility_cache/thumbnail.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sightline {
 
@@ -19,6 +20,17 @@ ColorImage halved(const ColorImage& image) {
 ColorImage thumbnail(ColorImage image, int width_px) {
   while (image.width > std::max(1, width_px)) image = halved(image);
   return image;
+}
+
+float viewing_exposure(const ColorImage& image) {
+  double sum = 0;
+  for (const Color& c : image.pixels) {
+    const double y = 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
+    // One lamp in view must not darken everything else.
+    if (std::isfinite(y)) sum += std::min(y, 10.0);
+  }
+  if (!(sum > 0)) return 0;
+  return static_cast<float>(std::clamp(std::log2(0.2 * static_cast<double>(image.pixels.size()) / sum), -16.0, 16.0));
 }
 
 }  // namespace sightline

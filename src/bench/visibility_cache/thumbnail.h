@@ -10,4 +10,7 @@ ColorImage halved(const ColorImage& image);
 /// Halved until it is at most `width_px` wide.
 ColorImage thumbnail(ColorImage image, int width_px);
 
+/// Stops of exposure that bring the mean luminance to a fifth: for looking at pictures, not for their metrics.
+float viewing_exposure(const ColorImage& image);
+
 }  // namespace sightline
