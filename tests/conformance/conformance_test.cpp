@@ -101,8 +101,13 @@ TEST(Conformance, PassesOfProgressiveMethodsAddUp) {
     Context context;
     context.seed = exposure.seed;
     Picture passes{empty_frame(shot, exposure), {}};
-    for (const SampleRange range : {SampleRange{0, 1}, SampleRange{1, 2}, SampleRange{2, 3}})
-      expose_range(shot, exposure, range, passes, context);
+    RenderJob job;
+    job.world = shot.world;
+    job.settings = method.default_settings();
+    job.total_spp = static_cast<std::uint32_t>(exposure.spp);
+    const std::uint32_t multiple = method.pass_multiple(job);
+    for (std::uint32_t begin = 0; begin < job.total_spp; begin += multiple)
+      expose_range(shot, exposure, {begin, std::min(begin + multiple, job.total_spp)}, passes, context);
     EXPECT_TRUE(same_sums(expose(shot, exposure).frame, passes.frame));
   });
 }

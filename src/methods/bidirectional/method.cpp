@@ -228,6 +228,10 @@ std::unique_ptr<const Bake> BidirectionalMethod::prepare(const RenderJob& job, c
   return std::make_unique<DensityBake>(std::move(density));
 }
 
+std::uint32_t BidirectionalMethod::pass_multiple(const RenderJob& job) const {
+  return job.visibility && !job.visibility->exact() ? samples_a_pass(job) : 1;
+}
+
 void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                       const Context& context) const {
   const Pass pass(job, context);

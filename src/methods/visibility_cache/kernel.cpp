@@ -12,6 +12,9 @@ namespace {
 
 // Light samples worked off at a time: they, their ends and their answers stay in the L2 cache beside the visibility's table.
 constexpr std::size_t kBatch = 4096;
+// Directions of the environment from which each of an eye point's samples is chosen. To draw one anew costs several reads of tables far
+// larger than the L2 cache; a tile's set stays in it, and its ends are shared by many queries.
+constexpr std::uint32_t kSkyChoices = 64;
 
 using dimension::pair_of;
 
@@ -59,6 +62,7 @@ void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& 
   if (!lights_.punctual.empty()) in_chunks(lights_.punctual.size(), [&](EyeRange chunk) { shade_punctual(chunk, statistics); });
   const auto n = static_cast<std::size_t>(pass.light_samples);
   if (!lights_.area.empty()) in_chunks(n, [&](EyeRange chunk) { shade_area(chunk, pass, statistics); });
+  if (!lights_.environment.empty()) draw_environment(tile, range, pass);
   if (!lights_.environment.empty()) in_chunks(n, [&](EyeRange chunk) { shade_environment(chunk, pass, statistics); });
   if (pass.virtual_lights.size > 0) in_chunks(pass.virtual_lights.size, [&](EyeRange chunk) { shade_virtual(chunk, pass, statistics); });
   write(frame);
@@ -186,53 +190,89 @@ void EyeKernel::shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& 
   ask(direct_, statistics);
 }
 
+// A set of directions for the tile and these samples alone, drawn like any others: choosing one of them at random leaves each sample's
+// density what it is.
+void EyeKernel::draw_environment(const Tile& tile, SampleRange range, const EyePass& pass) {
+  const auto count = static_cast<std::size_t>(pass.light_samples - environment_bsdf_samples(pass)) * kSkyChoices;
+  key_.resize(padded(count)), index_.resize(padded(count));
+  for (auto* numbers : {&u0_, &u1_, &u2_}) numbers->resize(padded(count));
+  position_.resize(count), normal_.resize(count);
+  std::fill_n(key_.data(), count, hash_combine(pixel_key(seed_, tile.index), hash32(range.begin ^ 0x5bd1e995u)));
+  std::iota(index_.data(), index_.data() + count, 0u);
+  sobol_2d(key_.data(), index_.data(), pair_of(1, dimension::kLightPoint), count, u0_.data(), u1_.data());
+  fill(position_, 0, count, Vec3(0)), fill(normal_, 0, count, Vec3(0));
+  world_.lights().sample(lights_.environment, position_, normal_, u2_, u0_, u1_, count, sky_);
+  sky_size_ = count;
+}
+
+int EyeKernel::environment_bsdf_samples(const EyePass& pass) const {
+  return static_cast<int>(std::floor(settings_.bsdf_share * static_cast<float>(pass.light_samples)));
+}
+
 // The environment's samples and the BSDF's, weighted against each other by the balance heuristic. Cells follow the density of both, with
 // that of the BSDF taken as uniform over the hemisphere: keys of neighbours must not depend on where a lobe points.
 void EyeKernel::shade_environment(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
-  const auto n = static_cast<std::size_t>(pass.light_samples);
-  const auto of_bsdf = static_cast<std::size_t>(std::floor(settings_.bsdf_share * static_cast<float>(n)));
-  const std::size_t of_light = n - of_bsdf, eyes = chunk.second - chunk.first, lanes = eyes * n;
-  const LightTable& lights = world_.lights();
+  const auto n = static_cast<std::size_t>(pass.light_samples), of_bsdf = static_cast<std::size_t>(environment_bsdf_samples(pass));
+  const std::size_t of_light = n - of_bsdf, eyes = chunk.second - chunk.first;
   draw_numbers(chunk, n, pair_of(1, dimension::kLightPick));
-  lights.sample(lights_.environment, position_, normal_, u2_, u0_, u1_, lanes, light_);
-  const float inverse = 1 / static_cast<float>(of_light);
-  const SampleWeights weights{inverse, static_cast<float>(of_light), static_cast<float>(of_bsdf)};
+  const SampleWeights weights{1 / static_cast<float>(of_light), static_cast<float>(of_light), static_cast<float>(of_bsdf)};
+  light_.resize(n);
+  set_eye_ends(chunk);
+  queries_.resize_lights(sky_size_ + eyes * of_bsdf);
+  copy(sky_.wi, sky_size_, queries_.light.position);
+  // Cells of both techniques' density.
+  const float uniform = static_cast<float>(of_bsdf) / (2 * kPi);
+  const auto cell_of = [&](float light_pdf) { return 1 / (static_cast<float>(of_light) * light_pdf + uniform + 1e-20f); };
+  for (std::size_t i = 0; i < sky_size_; ++i) queries_.light.cell_area[i] = cell_of(sky_.pdf[i]);
+
   contributions_.size = 0;
   for (std::size_t k = 0; k < eyes; ++k) {
     const EyeSample& e = eye(chunk.first + k);
-    const auto eye_index = static_cast<std::uint32_t>(k), lane = static_cast<std::uint32_t>(k * n);
-    add_samples(e, eye_index, light_, lane, of_light, lane, weights, contributions_);
-    for (std::size_t i = lane + of_light; i < lane + n; ++i) {
-      const Vec3 wo_local = e.frame.to_local(e.wo);
-      const std::optional<BsdfSample> sample = e.bsdf.sample(wo_local, u2_[i], {u0_[i], u1_[i]});
-      light_.pdf[i] = 0;
-      if (!sample || sample->is_delta) continue;
-      const Vec3 wi = e.frame.to_world(sample->wi);
-      if ((glm::dot(wi, e.geometric_normal) * glm::dot(e.wo, e.geometric_normal) < 0) != sample->is_transmission) continue;
-      const float light_pdf = lights.environment_density(wi);
-      const float share = 1 / (weights.mis_bsdf * sample->pdf + weights.mis_light * light_pdf);
-      const Color value = e.weight * sample->weight * lights.environment(wi) * (sample->pdf * share);
-      light_.wi.x[i] = wi.x, light_.wi.y[i] = wi.y, light_.wi.z[i] = wi.z;
-      light_.pdf[i] = light_pdf;
-      if (!(max_component(value) > 0)) continue;
-      const std::size_t at = contributions_.size++;
-      contributions_.color.x[at] = value.x, contributions_.color.y[at] = value.y, contributions_.color.z[at] = value.z;
-      contributions_.eye[at] = eye_index, contributions_.light[at] = static_cast<std::uint32_t>(i);
+    const auto eye_index = static_cast<std::uint32_t>(k);
+    const std::size_t first = k * n;
+    // One direction of each group of kSkyChoices, gathered side by side.
+    for (std::size_t i = 0; i < of_light; ++i) {
+      const auto choice = static_cast<std::size_t>(u2_[first + i] * static_cast<float>(kSkyChoices));
+      const std::size_t from = i + of_light * std::min<std::size_t>(choice, kSkyChoices - 1);
+      entry_[i] = static_cast<std::uint32_t>(from);
+      light_.wi.x[i] = sky_.wi.x[from], light_.wi.y[i] = sky_.wi.y[from], light_.wi.z[i] = sky_.wi.z[from];
+      light_.radiance.x[i] = sky_.radiance.x[from], light_.radiance.y[i] = sky_.radiance.y[from];
+      light_.radiance.z[i] = sky_.radiance.z[from], light_.pdf[i] = sky_.pdf[from];
+    }
+    const std::size_t before = contributions_.size;
+    add_samples(e, eye_index, light_, 0, of_light, 0, weights, contributions_);
+    for (std::size_t c = before; c < contributions_.size; ++c) contributions_.light[c] = entry_[contributions_.light[c]];
+    for (std::size_t i = 0; i < of_bsdf; ++i) {
+      const std::size_t lane = first + of_light + i, end = sky_size_ + k * of_bsdf + i;
+      add_bsdf_sample(e, eye_index, u2_[lane], {u0_[lane], u1_[lane]}, weights, end, cell_of);
     }
   }
-
-  set_eye_ends(chunk);
-  queries_.resize_lights(lanes);
-  copy(light_.wi, lanes, queries_.light.position);
-  fill(queries_.light.normal, 0, lanes, Vec3(0));
-  std::fill_n(queries_.light.error.data(), lanes, 0.f);
-  std::fill_n(queries_.semantic.data(), lanes, byte(QuerySemantic::solid_angle));
-  std::copy_n(index_.data(), lanes, queries_.light.id.data());
-  const float uniform = static_cast<float>(of_bsdf) / (2 * kPi);
-  for (std::size_t i = 0; i < lanes; ++i)
-    queries_.light.cell_area[i] = 1 / (static_cast<float>(of_light) * light_.pdf[i] + uniform + 1e-20f);
+  fill(queries_.light.normal, 0, queries_.light.size, Vec3(0));
+  std::fill_n(queries_.light.error.data(), queries_.light.size, 0.f);
+  std::fill_n(queries_.semantic.data(), queries_.light.size, byte(QuerySemantic::solid_angle));
+  std::iota(queries_.light.id.data(), queries_.light.id.data() + queries_.light.size, static_cast<std::uint32_t>(chunk.first));
   queries_.kind = BatchKind::shadow_diffuse;
   ask(direct_, statistics);
+}
+
+// A direction that the BSDF draws, as light end `end`.
+template <class CellOf>
+void EyeKernel::add_bsdf_sample(const EyeSample& e, std::uint32_t eye_index, float u_lobe, const Vec2& u, const SampleWeights& weights,
+                                std::size_t end, CellOf cell_of) {
+  QueryEnds& ends = queries_.light;
+  ends.position.x[end] = ends.position.y[end] = 0, ends.position.z[end] = 1, ends.cell_area[end] = 0;
+  const std::optional<BsdfSample> sample = e.bsdf.sample(e.frame.to_local(e.wo), u_lobe, u);
+  if (!sample || sample->is_delta) return;
+  const Vec3 wi = e.frame.to_world(sample->wi);
+  if ((glm::dot(wi, e.geometric_normal) * glm::dot(e.wo, e.geometric_normal) < 0) != sample->is_transmission) return;
+  const float light_pdf = world_.lights().environment_density(wi);
+  const float share = sample->pdf / (weights.mis_bsdf * sample->pdf + weights.mis_light * light_pdf);
+  const Color value = e.weight * sample->weight * world_.lights().environment(wi) * share;
+  if (!(max_component(value) > 0)) return;
+  ends.position.x[end] = wi.x, ends.position.y[end] = wi.y, ends.position.z[end] = wi.z, ends.cell_area[end] = cell_of(light_pdf);
+  const std::size_t at = contributions_.size++;
+  contributions_.color.x[at] = value.x, contributions_.color.y[at] = value.y, contributions_.color.z[at] = value.z;
+  contributions_.eye[at] = eye_index, contributions_.light[at] = static_cast<std::uint32_t>(end);
 }
 
 void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {

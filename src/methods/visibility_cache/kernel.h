@@ -50,7 +50,12 @@ class EyeKernel {
   void shade_punctual(EyeRange chunk, PassStatistics& statistics);
   void shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& statistics);
   void shade_environment(EyeRange chunk, const EyePass& pass, PassStatistics& statistics);
+  template <class CellOf>
+  void add_bsdf_sample(const EyeSample& e, std::uint32_t eye_index, float u_lobe, const Vec2& u, const SampleWeights& weights,
+                       std::size_t end, CellOf cell_of);
+  int environment_bsdf_samples(const EyePass& pass) const;
   void shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistics& statistics);
+  void draw_environment(const Tile& tile, SampleRange range, const EyePass& pass);
   void draw_numbers(EyeRange chunk, std::size_t per_eye, std::uint32_t first_pair);
   void set_virtual_ends(const VirtualPointLights& lights);
   void ask(Vec3Batch& radiance, PassStatistics& statistics);
@@ -77,6 +82,8 @@ class EyeKernel {
   AlignedVector<float> weights_;
   std::vector<std::size_t> chunk_slot_;
   LightSampleBatch light_;
+  LightSampleBatch sky_;  ///< directions of the environment that the tile's eye samples choose from
+  std::size_t sky_size_ = 0;
   Vec3Batch position_, normal_;
   AlignedVector<std::uint32_t> key_, index_, entry_;
   AlignedVector<float> u0_, u1_, u2_;

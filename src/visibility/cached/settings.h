@@ -22,7 +22,7 @@ struct CachedVisibilitySettings {
   CacheNormals normals = CacheNormals::rounded;
   int directions = 8;
   int flatness = 8;
-  float level_ratio = 1.2f;
+  float level_ratio = 1.4f;
   CacheSphere sphere = CacheSphere::equal_area;
   bool eq9_as_printed = false;
   int table_bits = 18;

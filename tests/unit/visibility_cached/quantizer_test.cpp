@@ -12,8 +12,11 @@
 namespace sightline::test {
 namespace {
 
+constexpr double kRatio = 1.2;  // the paper's C_R, for which its examples hold
+
 CachedVisibilitySettings with(const auto& change) {
   CachedVisibilitySettings settings;
+  settings.level_ratio = static_cast<float>(kRatio);
   change(settings);
   return settings;
 }
@@ -52,7 +55,7 @@ TEST(Quantizer, UniformSphereOf256SamplesHas256Cells) {
   for (const bool printed : {false, true}) {
     const Quantizer q(cube(1), with([&](auto& s) { s.eq9_as_printed = printed; }));
     const double level = q.constants().sphere_offset - 0.5 * q.constants().levels_per_octave * std::log2(area);
-    const double r = std::pow(1.2, level);
+    const double r = std::pow(kRatio, level);
     EXPECT_NEAR(r, printed ? 16 / (4 * std::numbers::pi) : 16, 1e-3);
     const EndWords words = q.light(QuerySemantic::solid_angle, {0, 1, 0}, Vec3(0), static_cast<float>(area));
     EXPECT_NEAR(q.resolution(words.level()), printed ? 1 : 15, 0.5);
@@ -61,24 +64,24 @@ TEST(Quantizer, UniformSphereOf256SamplesHas256Cells) {
 }
 
 TEST(Quantizer, LevelsFollowEquation8) {
-  const Quantizer q(cube(1), {});
+  const Quantizer q(cube(1), with([](auto&) {}));
   const double diameter = 2 * std::sqrt(3.0) * (1 + 1e-5);
   for (double r = 1; r < 1e6; r *= 1.0137) {
     const double edge = diameter / r;
     const EndWords words = q.light(QuerySemantic::surface, Vec3(0.1f), {0, 0, 1}, static_cast<float>(edge * edge));
     ASSERT_FALSE(words.unknown());
     const double quantised = q.resolution(words.level());
-    EXPECT_LE(std::fabs(words.level() - std::log(r) / std::log(1.2)), 0.5 + 1e-3);
+    EXPECT_LE(std::fabs(words.level() - std::log(r) / std::log(kRatio)), 0.5 + 1e-3);
     if (r < 32) continue;
-    EXPECT_LE(quantised / r, std::sqrt(1.2) * 1.001);
-    EXPECT_GE(quantised / r, 1 / std::sqrt(1.2) * 0.97);  // floor
+    EXPECT_LE(quantised / r, std::sqrt(kRatio) * 1.001);
+    EXPECT_GE(quantised / r, 1 / std::sqrt(kRatio) * 0.97);  // floor
   }
   // Finer than floats can tell apart: not cached, rather than cached wrongly.
   EXPECT_TRUE(q.light(QuerySemantic::surface, Vec3(0.1f), {0, 0, 1}, 1e-14f).unknown());
 }
 
 TEST(Quantizer, QuantisedResolutionsQuantiseToThemselves) {
-  const Quantizer q(cube(1), {});
+  const Quantizer q(cube(1), with([](auto&) {}));
   const double diameter = 2 * std::sqrt(3.0) * (1 + 1e-5);
   for (std::uint32_t k = 20; k < 76; ++k) {
     const double edge = diameter / q.resolution(k);
