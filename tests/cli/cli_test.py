@@ -794,6 +794,8 @@ class Bench(ProgramTest):
         for row in lookup["rows"]:
             self.assertGreater(row["ns_per_query"], 0)
             self.assertGreater(row["misses"], 0)
+        self.assertEqual([row["visibility"] for row in lookup["frames"]], ["exact", "cached", "cached"])
+        self.assertTrue(all(0 < row["visibility_share"] <= 1.01 for row in lookup["frames"]))
         depth_0, refined = lookup["rows"][:2]
         self.assertEqual(depth_0["lookups_per_query"], 1)
         self.assertGreater(refined["lookups_per_query"], 1)

@@ -11,6 +11,7 @@
 
 #include "bench/bare_loop.h"
 #include "bench/visibility_cache/figures.h"
+#include "bench/visibility_cache/frame_share.h"
 #include "bench/visibility_cache/parts.h"
 #include "bench/visibility_cache/query_recorder.h"
 #include "session/stopwatch.h"
@@ -186,17 +187,31 @@ Json exact_row(const CacheView& view, std::uint64_t most, const Context& context
   return json;
 }
 
+Json frame_row(const CacheView& view, const std::string& visibility, const std::vector<std::string>& settings, const Context& context) {
+  const FrameShare share = measure_frame_share(view, visibility, settings, context);
+  const double cores = share.frame_seconds * context.thread_count();
+  return {{"visibility", visibility},
+          {"settings", settings},
+          {"frame_seconds", share.frame_seconds},
+          {"visibility_share", cores > 0 ? share.core_seconds / cores : 0},
+          {"queries", share.counts.queries},
+          {"share_traced", query_figures(share.counts).share_traced},
+          {"ns_per_query", per(share.core_seconds, share.counts.queries)}};
+}
+
 }  // namespace
 
 Json cache_lookup(const CacheView& view, const CacheBenchOptions& options, const Context& context) {
   context.info(fmt::format("bench visibility-cache: look-ups, {}", view.name));
   const std::uint64_t most = options.quick ? 200'000 : 2'000'000;
-  Json json = {{"view", view.name}, {"exact", exact_row(view, most, context)}, {"rows", Json::array()}};
+  Json json = {{"view", view.name}, {"exact", exact_row(view, most, context)}, {"rows", Json::array()}, {"frames", Json::array()}};
+  json["frames"].push_back(frame_row(view, "exact", {}, context));
   for (const int ce : {8, 36}) {
     const std::string edge = fmt::format("ce={}", ce);
     const std::vector<RecordedScope> scopes = record_queries(view, "cached", {edge}, most, context);
     json["rows"].push_back(lookup_row(fmt::format("depth 0, C_E = {}", ce), scopes, view, {edge, "refine=none"}, context));
     json["rows"].push_back(lookup_row(fmt::format("refined, 4 neighbours, C_E = {}", ce), scopes, view, {edge, "refine=4"}, context));
+    json["frames"].push_back(frame_row(view, "cached", {edge}, context));
   }
   return json;
 }

@@ -5,21 +5,16 @@
 #include <mutex>
 #include <utility>
 
-#include "methods/method.h"
+#include "bench/visibility_cache/one_pass.h"
 
 namespace sightline {
 namespace {
 
 /// Hands everything on, and keeps a copy of what the wanted scopes ask.
-class Recorder final : public Visibility {
+class Recorder final : public VisibilityInFront {
  public:
-  Recorder(std::unique_ptr<Visibility> inner, std::uint32_t every, std::uint64_t most)
-      : inner_(std::move(inner)), every_(every), most_(most) {}
+  Recorder(Visibility& inner, std::uint32_t every, std::uint64_t most) : VisibilityInFront(inner), every_(every), most_(most) {}
 
-  bool binary() const override { return inner_->binary(); }
-  bool exact() const override { return inner_->exact(); }
-  float cluster_edge() const override { return inner_->cluster_edge(); }
-  void begin_pass(const VisibilityPass& pass, const Context& context) override { inner_->begin_pass(pass, context); }
   std::unique_ptr<VisibilityWorker> worker() override { return std::make_unique<Worker>(*this); }
 
   std::vector<RecordedScope> take() {
@@ -30,7 +25,7 @@ class Recorder final : public Visibility {
  private:
   class Worker final : public VisibilityWorker {
    public:
-    explicit Worker(Recorder& recorder) : recorder_(recorder), inner_(recorder.inner_->worker()) {}
+    explicit Worker(Recorder& recorder) : recorder_(recorder), inner_(recorder.inner_.worker()) {}
     ~Worker() override { recorder_.keep(std::move(current_)); }
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -58,7 +53,6 @@ class Recorder final : public Visibility {
     scopes_.push_back(std::move(scope));
   }
 
-  std::unique_ptr<Visibility> inner_;
   std::uint32_t every_;
   std::uint64_t most_, recorded_ = 0;
   std::mutex mutex_;
@@ -69,23 +63,12 @@ class Recorder final : public Visibility {
 
 std::vector<RecordedScope> record_queries(const CacheView& view, const std::string& visibility, const std::vector<std::string>& settings,
                                           std::uint64_t queries, const Context& context) {
-  const Method& method = find_method("visibility-cache");
-  const VisibilityInfo& info = find_visibility(visibility);
-  const ResolvedSettings resolved = resolve_settings(method, info, settings);
-  const View camera_view(view.camera, view.size_px, PixelFilter(PixelFilter::Kind::centre));
-  Frame frame(view.size_px.x, view.size_px.y, {});
+  const MadeVisibility made = make_visibility(view, visibility, settings, context);
   // Tiles far from each other; more of them where a tile asks little.
-  const auto every = static_cast<std::uint32_t>(std::clamp<std::size_t>(frame.tile_count() / 16, 1, 97));
-  Recorder recorder(info.make(view.world, resolved.visibility, context), every, queries);
-  RenderJob job;
-  job.world = view.world;
-  job.view = &camera_view;
-  job.settings = resolved.method;
-  job.visibility = &recorder;
-  job.max_bounces = view.max_bounces;
-  job.light_samples = view.light_samples;
-  PassStatistics statistics;
-  method.render_pass(job, {0, 1}, frame, statistics, context);
+  const std::size_t tiles = Frame(view.size_px.x, view.size_px.y, {}).tile_count();
+  const auto every = static_cast<std::uint32_t>(std::clamp<std::size_t>(tiles / 16, 1, 97));
+  Recorder recorder(*made.visibility, every, queries);
+  render_one_pass(view, made.method_settings, recorder, context);
   return recorder.take();
 }
 

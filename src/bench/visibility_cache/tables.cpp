@@ -101,6 +101,23 @@ std::vector<BenchTable> shadow_map_tables(const Json& views) {
   return tables;
 }
 
+BenchTable frame_table(const Json& views) {
+  BenchTable table{.title = "Visibility in the frame",
+                   .note =
+                       "One sample a pixel, all threads: the share of core time that queries take, misses and rays included. The rest is "
+                       "eye paths, lights, BSDFs and sums.",
+                   .header = {"view", "visibility", "frame, s", "visibility's share", "ns a query", "traced"},
+                   .text_columns = 2};
+  for (const Json& view : views) {
+    for (const Json& row : view["frames"]) {
+      const std::string settings = row["settings"].empty() ? "" : ", " + text(row["settings"][0]);
+      table.rows.push_back({text(view["view"]), text(row["visibility"]) + settings, seconds(row["frame_seconds"]),
+                            percent(row["visibility_share"], 1), fixed(row["ns_per_query"], 1), percent(row["share_traced"])});
+    }
+  }
+  return table;
+}
+
 std::vector<BenchTable> lookup_tables(const Json& views) {
   BenchTable costs{.title = "Look-ups and misses",
                    .note =
@@ -125,7 +142,7 @@ std::vector<BenchTable> lookup_tables(const Json& views) {
                           bare ? fixed(e["bare_mray_per_s"], 1) : "–", bare ? text(e["bare_style"]) : "–",
                           bare ? percent(e["throughput_kept"], 1) : "–"});
   }
-  return {costs, exact};
+  return {costs, exact, frame_table(views)};
 }
 
 std::vector<BenchTable> flicker_tables(const Json& views) {
