@@ -1,21 +1,18 @@
-// What a query and a miss cost in the batch path, on the batches that the view's picture asks; and what exact rays cost beside bare Embree.
+// What a query and a miss cost in the batch path, on the batches that the view's picture asks.
 //
 // Replayed on one thread. A batch is first answered by a cold table, then again until nothing is traced any more: from then on all are
 // hits, and keys, hashes and look-ups are all that is left to pay.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <limits>
 
-#include "bench/bare_loop.h"
+#include "bench/visibility_cache/exact_path.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/frame_share.h"
 #include "bench/visibility_cache/parts.h"
 #include "bench/visibility_cache/query_recorder.h"
 #include "session/stopwatch.h"
-#include "trace/embree/embree_tracer.h"
 #include "visibility/query_rays.h"
 
 namespace sightline {
@@ -127,66 +124,6 @@ Json lookup_row(const std::string& name, const std::vector<RecordedScope>& scope
           {"ns_per_miss_besides_ray", per(r.cold_seconds - r.miss_ray_seconds, r.cold_misses)}};
 }
 
-// The exact visibility on its own batches; the same rays, made beforehand, as a Tracer gets them; and in bare Embree calls.
-Json exact_row(const CacheView& view, std::uint64_t most, const Context& context) {
-  const std::vector<RecordedScope> scopes = record_queries(view, "exact", {}, most, context);
-  const std::unique_ptr<Visibility> visibility = find_visibility("exact").make(view.world, find_visibility("exact").settings, context);
-  const std::unique_ptr<VisibilityWorker> worker = visibility->worker();
-  const EmbreeScenes* scenes = embree_scenes(view.world->tracer());
-  // Bare calls know neither instances nor alpha masks.
-  const bool comparable = scenes && scenes->static_scene && !scenes->top_scene && !(scenes->masks && scenes->masks->any());
-  constexpr std::array<CallStyle, 5> kStyles = {{{1, false}, {8, false}, {8, true}, {16, false}, {16, true}}};
-  constexpr std::size_t kExact = kStyles.size(), kTracer = kExact + 1;
-  AlignedVector<float> weights;
-  AlignedVector<std::uint8_t> blocked;
-  RayBatch made;
-  std::uint64_t count = 0;
-  std::array<double, kTracer + 1> total{};
-  for (const RecordedScope& scope : scopes) {
-    context.check_cancelled();
-    worker->begin(scope.scope);
-    for (const QueryBatch& batch : scope.batches) {
-      weights.resize(std::max(weights.size(), padded(batch.size) + kLanes));
-      blocked.resize(std::max(blocked.size(), padded(batch.size)));
-      RayCounts rays;
-      VisibilityCounts counts;
-      made.resize(batch.size);
-      for (std::size_t i = 0; i < batch.size; ++i) made.set(i, query_ray(batch, i));
-      const auto run = [&](std::size_t candidate) {
-        if (candidate == kExact) return worker->visible(batch, weights, rays, counts);
-        if (candidate == kTracer) return view.world->tracer().occluded(made, std::span(blocked), batch.kind, rays);
-        if (comparable) bare_occluded(scenes->static_scene, made, blocked.data(), kStyles[candidate]);
-      };
-      // All by turns; the first round warms up.
-      std::array<std::vector<double>, kTracer + 1> seconds;
-      for (int round = 0; round <= kRounds; ++round) {
-        for (std::size_t c = 0; c < seconds.size(); ++c) {
-          const double one = timed([&] { run(c); });
-          if (round > 0) seconds[c].push_back(one);
-        }
-      }
-      count += batch.size;
-      for (std::size_t c = 0; c < seconds.size(); ++c) total[c] += median(seconds[c]);
-    }
-  }
-  if (count == 0) return {{"rays", 0}};
-  const double rate = static_cast<double>(count) * 1e-6;
-  Json json = {{"rays", count},
-               {"exact_mray_per_s", rate / total[kExact]},
-               {"exact_ns_per_query", per(total[kExact], count)},
-               {"tracer_mray_per_s", rate / total[kTracer]}};
-  if (!comparable) return json;
-  const auto best = std::min_element(total.begin(), total.begin() + kExact);
-  const auto text = [](CallStyle style) {
-    return fmt::format("{}{}", style.width, style.width == 1 ? "" : style.coherent ? " coherent" : " incoherent");
-  };
-  json["bare_mray_per_s"] = rate / *best;
-  json["bare_style"] = text(kStyles[static_cast<std::size_t>(best - total.begin())]);
-  json["throughput_kept"] = *best / total[kExact];
-  for (std::size_t c = 0; c < kStyles.size(); ++c) json["bare_all"][text(kStyles[c])] = rate / total[c];
-  return json;
-}
-
 Json frame_row(const CacheView& view, const std::string& visibility, const std::vector<std::string>& settings, const Context& context) {
   const FrameShare share = measure_frame_share(view, visibility, settings, context);
   const double cores = share.frame_seconds * context.thread_count();
@@ -204,7 +141,7 @@ Json frame_row(const CacheView& view, const std::string& visibility, const std::
 Json cache_lookup(const CacheView& view, const CacheBenchOptions& options, const Context& context) {
   context.info(fmt::format("bench visibility-cache: look-ups, {}", view.name));
   const std::uint64_t most = options.quick ? 200'000 : 2'000'000;
-  Json json = {{"view", view.name}, {"exact", exact_row(view, most, context)}, {"rows", Json::array()}, {"frames", Json::array()}};
+  Json json = {{"view", view.name}, {"exact", measure_exact_path(view, most, context)}, {"rows", Json::array()}, {"frames", Json::array()}};
   json["frames"].push_back(frame_row(view, "exact", {}, context));
   for (const int ce : {8, 36}) {
     const std::string edge = fmt::format("ce={}", ce);
