@@ -112,16 +112,19 @@ std::vector<std::string> bench_view_names() {
   return names;
 }
 
+void check_bench_view(const std::string& name) {
+  const std::vector<std::string> known = bench_view_names();
+  if (name.starts_with("builtin:") || std::find(known.begin(), known.end(), name) != known.end()) return;
+  const std::string nearest = nearest_name(name, known);
+  throw usage_error("unknown view '" + name + "'")
+      .remedy(nearest.empty() ? fmt::format("known: {}", fmt::join(known, ", ")) : "did you mean '" + nearest + "'?");
+}
+
 std::optional<BenchView> load_bench_view(const std::string& name, const std::filesystem::path& data, const Context& context) {
+  check_bench_view(name);
   ViewInfo info{.name = name, .spec = name};
-  if (!name.starts_with("builtin:")) {
-    const auto known = std::find_if(views().begin(), views().end(), [&](const ViewInfo& view) { return view.name == name; });
-    if (known == views().end()) {
-      const std::string nearest = nearest_name(name, bench_view_names());
-      throw usage_error("unknown view '" + name + "'")
-          .remedy(nearest.empty() ? fmt::format("known: {}", fmt::join(bench_view_names(), ", ")) : "did you mean '" + nearest + "'?");
-    }
-    info = *known;
+  for (const ViewInfo& view : views()) {
+    if (view.name == name) info = view;
   }
   const std::optional<std::filesystem::path> folder = folder_with(info.needs, data.string());
   if (!folder) return std::nullopt;

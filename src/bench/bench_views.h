@@ -21,6 +21,8 @@ struct BenchView {
 
 /// Names of all standard views.
 std::vector<std::string> bench_view_names();
+/// Throws Error{usage} with the nearest name if there is no such view; "builtin:..." is taken as it is.
+void check_bench_view(const std::string& name);
 /// The view, or nothing where its files are not below `data`: a folder, or several joined by ':', of which the first that has them counts.
 /// "builtin:NAME,..." is a view of that scene as it is. Throws Error{usage} for unknown names.
 std::optional<BenchView> load_bench_view(const std::string& name, const std::filesystem::path& data, const Context& context);

@@ -4,6 +4,7 @@
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
+#include "bench/bench_views.h"
 #include "bench/visibility_cache/aims.h"
 #include "bench/visibility_cache/cache_view.h"
 #include "bench/visibility_cache/parts.h"
@@ -46,6 +47,8 @@ class Plan {
       throw usage_error("unknown part '" + part + "'")
           .remedy(nearest.empty() ? "known: curves, rivals, lookup, flicker, ablations" : "did you mean '" + nearest + "'?");
     }
+    // Before hours of work, not after.
+    for (const std::string& view : options.views) check_bench_view(view);
     for (const Part& part : part_table()) {
       if (!wanted(part)) continue;
       for (const std::string& view : options.views.empty() ? part.views : options.views) {
