@@ -159,7 +159,7 @@ void EyeKernel::shade_punctual(EyeRange chunk, PassStatistics& statistics) {
     queries_.semantic[j] = byte(infinite ? QuerySemantic::direction : QuerySemantic::point);
   }
   queries_.kind = BatchKind::shadow;
-  ask(direct_, statistics);
+  ask(direct_, true, statistics);
 }
 
 void EyeKernel::shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
@@ -187,7 +187,7 @@ void EyeKernel::shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& 
   }
   queries_.kind = BatchKind::shadow;
   queries_.surface_ends = SurfaceEnds::area_light;
-  ask(direct_, statistics);
+  ask(direct_, false, statistics);
 }
 
 // A set of directions for the tile and these samples alone, drawn like any others: choosing one of them at random leaves each sample's
@@ -252,7 +252,7 @@ void EyeKernel::shade_environment(EyeRange chunk, const EyePass& pass, PassStati
   std::fill_n(queries_.semantic.data(), queries_.light.size, byte(QuerySemantic::solid_angle));
   std::iota(queries_.light.id.data(), queries_.light.id.data() + queries_.light.size, static_cast<std::uint32_t>(chunk.first));
   queries_.kind = BatchKind::shadow_diffuse;
-  ask(direct_, statistics);
+  ask(direct_, false, statistics);
 }
 
 // A direction that the BSDF draws, as light end `end`.
@@ -291,17 +291,21 @@ void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistic
   std::fill_n(queries_.semantic.data(), lights.size, byte(QuerySemantic::surface));
   queries_.kind = BatchKind::shadow_diffuse;
   queries_.surface_ends = SurfaceEnds::virtual_light;
-  ask(indirect_, statistics);
+  ask(indirect_, true, statistics);
 }
 
 // Asks about all contributions and adds up those that arrive, eye point by eye point.
-void EyeKernel::ask(Vec3Batch& radiance, PassStatistics& statistics) {
+void EyeKernel::ask(Vec3Batch& radiance, bool shared_lights, PassStatistics& statistics) {
   const std::size_t count = contributions_.size;
   if (count == 0) return;
   queries_.resize_queries(count);
-  std::copy_n(contributions_.eye.data(), count, queries_.eye_of.data());
-  std::copy_n(contributions_.light.data(), count, queries_.light_of.data());
-  worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
+  if (spatial_order_ && shared_lights) {
+    ask_by_light(statistics);
+  } else {
+    std::copy_n(contributions_.eye.data(), count, queries_.eye_of.data());
+    std::copy_n(contributions_.light.data(), count, queries_.light_of.data());
+    worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
+  }
   for (std::size_t begin = 0; begin < count;) {
     const std::uint32_t k = contributions_.eye[begin];
     std::size_t end = begin + 1;
@@ -309,6 +313,23 @@ void EyeKernel::ask(Vec3Batch& radiance, PassStatistics& statistics) {
     add(radiance, chunk_slot_[k], weighted_sum(contributions_, weights_.data(), begin, end));
     begin = end;
   }
+}
+
+// Where every query is a ray and lights are shared by many eye points, rays to one light trace fastest together.
+void EyeKernel::ask_by_light(PassStatistics& statistics) {
+  const std::size_t count = contributions_.size;
+  light_begin_.assign(queries_.light.size + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) ++light_begin_[contributions_.light[i] + 1];
+  std::partial_sum(light_begin_.begin(), light_begin_.end(), light_begin_.begin());
+  place_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t light = contributions_.light[i], to = light_begin_[light]++;
+    place_[i] = to, queries_.light_of[to] = light, queries_.eye_of[to] = contributions_.eye[i];
+  }
+  queries_.kind = BatchKind::shadow;
+  sorted_weights_.resize(std::max(sorted_weights_.size(), padded(count)));
+  worker_->visible(queries_, sorted_weights_, statistics.rays, statistics.visibility);
+  for (std::size_t i = 0; i < count; ++i) weights_[i] = sorted_weights_[place_[i]];
 }
 
 void EyeKernel::write(Frame& frame) {

@@ -58,7 +58,8 @@ class EyeKernel {
   void draw_environment(const Tile& tile, SampleRange range, const EyePass& pass);
   void draw_numbers(EyeRange chunk, std::size_t per_eye, std::uint32_t first_pair);
   void set_virtual_ends(const VirtualPointLights& lights);
-  void ask(Vec3Batch& radiance, PassStatistics& statistics);
+  void ask(Vec3Batch& radiance, bool shared_lights, PassStatistics& statistics);
+  void ask_by_light(PassStatistics& statistics);
   void write(Frame& frame);
 
   const World& world_;
@@ -79,7 +80,8 @@ class EyeKernel {
   // One batch of queries.
   QueryBatch queries_;
   Contributions contributions_;
-  AlignedVector<float> weights_;
+  AlignedVector<float> weights_, sorted_weights_;
+  std::vector<std::uint32_t> light_begin_, place_;  ///< sorting queries by light
   std::vector<std::size_t> chunk_slot_;
   LightSampleBatch light_;
   LightSampleBatch sky_;  ///< directions of the environment that the tile's eye samples choose from
