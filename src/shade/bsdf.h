@@ -33,6 +33,10 @@ class Bsdf {
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const {
     return std::visit([&](const auto& m) { return m.delta_lobes(wo, mode); }, model_);
   }
+  /// Tells the model a direction that many evaluations will share. Changes no value, only how often it is worked out.
+  void prepare(const Vec3& w) {
+    if (CoatedDiffuse* coated = std::get_if<CoatedDiffuse>(&model_)) coated->prepare(w);
+  }
   Color albedo() const {
     return std::visit([](const auto& m) { return m.albedo(); }, model_);
   }

@@ -18,7 +18,13 @@ CoatedDiffuse::CoatedDiffuse(const Color& reflectance, float eta, const Ggx& ggx
   base_ = rho / (eta_ * eta_ * (1.f - rho) + rho * mean_transmittance_);
 }
 
+void CoatedDiffuse::prepare(const Vec3& w) {
+  known_reflectance_ = coat_reflectance(std::fabs(w.z));
+  known_cosine_ = std::fabs(w.z);
+}
+
 float CoatedDiffuse::coat_reflectance(float cos_theta) const {
+  if (cos_theta == known_cosine_) return known_reflectance_;
   return ggx_.is_smooth() ? fresnel_dielectric(cos_theta, eta_) : ggx_dielectric_albedo(cos_theta, ggx_, eta_);
 }
 

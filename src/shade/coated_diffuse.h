@@ -20,6 +20,8 @@ class CoatedDiffuse {
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
+  /// Remembers what the coat reflects of unit `w`: for a direction that many evaluations share.
+  void prepare(const Vec3& w);
   Color albedo() const;
   bool is_delta() const { return false; }
 
@@ -33,6 +35,7 @@ class CoatedDiffuse {
   float eta_;
   float mean_transmittance_;  // of the coat from outside
   Ggx ggx_;
+  float known_cosine_ = -1, known_reflectance_ = 0;  // of prepare()
 };
 
 }  // namespace sightline

@@ -110,8 +110,15 @@ void make_rays(const QueryBatch& queries, const std::uint32_t* which, std::size_
 }
 
 void QueryRays(const QueryBatch& queries, const std::uint32_t* which, std::size_t first, std::size_t count, RayBatch& rays) {
-  const bool any = std::any_of(queries.semantic.begin(), queries.semantic.begin() + static_cast<std::ptrdiff_t>(queries.light.size),
-                               [](std::uint8_t s) { return is_infinite(static_cast<QuerySemantic>(s)); });
+  // A loop that compilers make vectors of: it runs for every group of misses.
+  static_assert(is_infinite(QuerySemantic::direction) && is_infinite(QuerySemantic::solid_angle));
+  constexpr auto kDirection = static_cast<std::uint8_t>(QuerySemantic::direction);
+  constexpr auto kSolidAngle = static_cast<std::uint8_t>(QuerySemantic::solid_angle);
+  static_assert(!is_infinite(QuerySemantic::point) && !is_infinite(QuerySemantic::surface));
+  const std::uint8_t* HWY_RESTRICT semantic = queries.semantic.data();
+  std::uint8_t any = 0;
+  for (std::size_t i = 0; i < queries.light.size; ++i)
+    any = static_cast<std::uint8_t>(any | (semantic[i] == kDirection) | (semantic[i] == kSolidAngle));
   if (any)
     make_rays<true>(queries, which, first, count, rays);
   else

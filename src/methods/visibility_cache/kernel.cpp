@@ -55,6 +55,7 @@ EyeKernel::EyeKernel(const World& world, const View& view, Visibility& visibilit
 
 void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& pass, Frame& frame, PassStatistics& statistics) {
   eye_paths_.trace(tile, range, pass.samples, paths_, eye_samples_, frame, statistics.rays);
+  for (EyeSample& e : eye_samples_) e.bsdf.prepare(e.frame.to_local(e.wo));
   put_in_order(tile);
   direct_.resize(paths_.count), indirect_.resize(paths_.count);
   fill(direct_, 0, paths_.count, Color(0)), fill(indirect_, 0, paths_.count, Color(0));

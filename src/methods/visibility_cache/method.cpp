@@ -57,7 +57,9 @@ void VisibilityCacheMethod::render_pass(const RenderJob& job, SampleRange range,
       options.pass = index;
       pass.virtual_lights = make_virtual_point_lights(world, *job.view, options, context, statistics.rays);
       for (std::uint32_t j = 0; j < pass.virtual_lights.size; ++j) {
-        if (!pass.virtual_lights.lambert[j]) pass.general_virtual_lights.push_back(j);
+        if (pass.virtual_lights.lambert[j]) continue;
+        pass.general_virtual_lights.push_back(j);
+        pass.virtual_lights.bsdf[j].prepare(pass.virtual_lights.frame[j].to_local(pass.virtual_lights.wi[j]));
       }
     }
     job.visibility->begin_pass({first, 0}, context);

@@ -84,5 +84,20 @@ TEST(CoatedDiffuse, WithoutContrastIsLambert) {
   }
 }
 
+TEST(CoatedDiffuse, APreparedDirectionChangesNoValue) {
+  Uniform random(6);
+  for (int i = 0; i < 200; ++i) {
+    const Bsdf plain(CoatedDiffuse(Color(0.6f, 0.3f, 0.1f), 1.5f, i % 3 == 0 ? Ggx() : Ggx(0.3f, 0.2f)));
+    Vec3 wo = sample_cosine_hemisphere(random.next2()), wi = sample_cosine_hemisphere(random.next2());
+    if (i % 2) wo.z = -wo.z, wi.z = -wi.z;
+    for (const Vec3& w : {wo, wi}) {
+      Bsdf prepared = plain;
+      prepared.prepare(w);
+      EXPECT_EQ(prepared.evaluate(wo, wi).f_cos, plain.evaluate(wo, wi).f_cos);
+      EXPECT_EQ(prepared.evaluate(wo, wi).pdf, plain.evaluate(wo, wi).pdf);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline::test
