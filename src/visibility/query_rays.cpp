@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "visibility/query_ray_lanes.h"
 
 namespace sightline {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // rays and answers stay in the L1 and L2 caches
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 }  // namespace
 

@@ -12,11 +12,7 @@ namespace sightline {
 
 const std::vector<VisibilityInfo>& visibilities() {
   static const std::vector<VisibilityInfo> table = {
-      exact_visibility(),
-      cached_visibility(),
-      automatic_visibility(),
-      nee_plus_plus_visibility(),
-      shadow_map_visibility(),
+      exact_visibility(), cached_visibility(), automatic_visibility(), nee_plus_plus_visibility(), shadow_map_visibility(),
   };
   return table;
 }

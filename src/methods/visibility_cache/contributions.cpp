@@ -1,12 +1,11 @@
 #include "methods/visibility_cache/contributions.h"
+#include "base/math/vec3_batch.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace sightline {
 namespace {
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 /// What all lights at one eye point share.
 struct EyeView {

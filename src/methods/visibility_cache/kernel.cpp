@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/visibility_cache/pixel_order.h"
 
@@ -18,13 +19,6 @@ constexpr std::uint32_t kSkyChoices = 64;
 
 using dimension::pair_of;
 
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-void add(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] += v.x, batch.y[i] += v.y, batch.z[i] += v.z; }
-void fill(Vec3Batch& batch, std::size_t first, std::size_t count, const Vec3& v) {
-  std::fill_n(batch.x.data() + first, count, v.x);
-  std::fill_n(batch.y.data() + first, count, v.y);
-  std::fill_n(batch.z.data() + first, count, v.z);
-}
 void copy(const Vec3Batch& from, std::size_t count, Vec3Batch& to) {
   std::copy_n(from.x.data(), count, to.x.data());
   std::copy_n(from.y.data(), count, to.y.data());
