@@ -101,6 +101,7 @@ void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
   for (auto* numbers : {&u0_, &u1_, &u2_}) numbers->resize(padded(chunk * per_eye));
   for (auto* numbers : {&key_, &index_, &entry_}) numbers->resize(padded(chunk * per_eye));
   position_.resize(chunk * per_eye), normal_.resize(chunk * per_eye);
+  light_.resize(chunk * per_eye + kLanes);  // runs that begin anywhere are read in whole vectors
   for (std::size_t begin = 0; begin < order_.size(); begin += chunk) shade({begin, std::min(begin + chunk, order_.size())});
 }
 
@@ -211,7 +212,7 @@ void EyeKernel::shade_environment(EyeRange chunk, const EyePass& pass, PassStati
   const std::size_t of_light = n - of_bsdf, eyes = chunk.second - chunk.first;
   draw_numbers(chunk, n, pair_of(1, dimension::kLightPick));
   const SampleWeights weights{1 / static_cast<float>(of_light), static_cast<float>(of_light), static_cast<float>(of_bsdf)};
-  light_.resize(n);
+  light_.resize(n + kLanes);
   set_eye_ends(chunk);
   queries_.resize_lights(sky_size_ + eyes * of_bsdf);
   copy(sky_.wi, sky_size_, queries_.light.position);
