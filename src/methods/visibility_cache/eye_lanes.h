@@ -33,7 +33,8 @@ struct SampleWeights {
   float mis_bsdf = 0;   ///< samples drawn from the BSDF; 0 = no other technique
 };
 
-/// Appends the light samples [first, first + count) of `lights` at `eye`, whose BSDF is a Lambert. Lights are numbered from `number` on.
+/// Appends the light samples [first, first + count) of `lights` at `eye`, whose BSDF is a Lambert. Up to kLanes - 1 lanes behind the last
+/// are read, and must be there. Lights are numbered from `number` on.
 void append_samples(const EyeSample& eye, std::uint32_t eye_index, const LightSampleBatch& lights, std::size_t first, std::size_t count,
                     std::uint32_t number, const SampleWeights& weights, Contributions& out);
 

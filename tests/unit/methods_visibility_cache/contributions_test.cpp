@@ -37,7 +37,7 @@ EyeSample random_eye(Random& random) {
 
 LightSampleBatch random_samples(Random& random, std::size_t count) {
   LightSampleBatch lights;
-  lights.resize(count);
+  lights.resize(count + kLanes);
   for (std::size_t i = 0; i < count; ++i) {
     LightSample s;
     s.wi = random.direction();
