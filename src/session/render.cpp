@@ -41,13 +41,14 @@ AovSet frame_layers(const RenderRequest& request) {
 }
 
 // What two frames must share to be added up or continued.
-FrameIdentity frame_identity(const World& world, const View& view, const RenderResult& result, std::uint64_t seed) {
+FrameIdentity frame_identity(const World& world, const View& view, const RenderResult& result, std::uint64_t seed, std::uint32_t multiple) {
   const Camera& camera = view.camera();
   std::string text = fmt::format(
       "scene {:016x}; size {}x{}; filter {}; seed {}; simd {}; method {}; visibility {}; light_samples {}; max_bounces {}; one {}",
       scene_hash(world.scene()), result.frame.width(), result.frame.height(), pixel_filter_name(view.filter().kind()), seed,
       simd_target_name(), result.method, result.visibility, result.light_samples, result.max_bounces, result.spp == 1);
   for (const auto& [name, value] : result.settings) text += fmt::format("; {}={}", name, value);
+  if (multiple > 1) text += fmt::format("; samples in groups of {}", multiple);
   text += "; camera";
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) text += fmt::format(" {}", camera.world_from_camera[column][row]);
@@ -78,11 +79,20 @@ std::string simd_target_name() { return simd_target(); }
 
 namespace {
 
-const VisibilityInfo* visibility_that_knows(const std::string& key) {
+/// Whether another visibility has the setting; throws if none of those that have it takes the value.
+bool is_of_another_visibility(const std::string& key, const std::string& assignment) {
+  std::optional<Error> refused;
   for (const VisibilityInfo& info : visibilities()) {
-    if (knows(info.settings, key)) return &info;
+    if (!knows(info.settings, key)) continue;
+    try {
+      SettingsValue(info.settings).apply(assignment);
+      return true;
+    } catch (const Error& error) {
+      refused = error;
+    }
   }
-  return nullptr;
+  if (refused) throw *refused;
+  return false;
 }
 
 }  // namespace
@@ -95,9 +105,8 @@ ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& vi
       resolved.method.apply(assignment);
     else if (knows(resolved.visibility, key))
       resolved.visibility.apply(assignment);
-    else if (const VisibilityInfo* other = visibility_that_knows(key)) {
+    else if (is_of_another_visibility(key, assignment)) {
       // Checked all the same: a comparison differs in --visibility alone, and a slip in the rest shows in every run of it.
-      SettingsValue(other->settings).apply(assignment);
       resolved.unused.push_back(key);
     } else {
       throw_unknown_setting(key, {&resolved.method.schema(), &resolved.visibility.schema()});
@@ -157,6 +166,10 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   method.check(world->scene(), job);
   const std::uint32_t multiple = std::max(1u, method.pass_multiple(job));
   check_whole_passes(samples, multiple, job.total_spp);
+  if (!visibility->passes_are_independent() && (request.sample_range || request.resume))
+    throw usage_error(
+        fmt::format("visibility '{}' learns from pass to pass: parts made apart are not the picture made in one go", visibility_info.name))
+        .remedy("render without --sample-range and --resume");
 
   const AovSet aovs = frame_layers(request);
   check_frame_memory(size_px, request, world->acceleration_bytes() + scene_bytes(world->scene()), context);
@@ -174,7 +187,7 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
                       {}};
   result.settings = settings.method.to_text();
   for (auto& setting : settings.visibility.to_text()) result.settings.push_back(std::move(setting));
-  result.identity = frame_identity(*world, view, result, context.seed);
+  result.identity = frame_identity(*world, view, result, context.seed, multiple);
   if (request.resume) result.frame = resume_frame(*request.resume, result.identity, samples, aovs);
 
   const Stopwatch prepare_watch;

@@ -52,6 +52,8 @@ class Visibility {
   virtual bool binary() const { return true; }
   /// Every query is a ray: callers that can trace their own packets may skip the interface.
   virtual bool exact() const { return false; }
+  /// Answers in a pass depend on that pass alone. If not, parts of a picture made apart do not add up to the picture made in one go.
+  virtual bool passes_are_independent() const { return true; }
   /// Edge of the screen area whose queries may share an answer, in eye samples (C_E): who asks can spread out its first queries.
   virtual float cluster_edge() const { return 1; }
   virtual void begin_pass(const VisibilityPass& pass, const Context& context);

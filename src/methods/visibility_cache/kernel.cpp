@@ -37,17 +37,22 @@ EyeLights::EyeLights(const LightTable& table)
 }
 
 EyeKernel::EyeKernel(const World& world, const View& view, Visibility& visibility, const VisibilityCacheSettings& settings,
-                     std::uint64_t seed, const EyeLights& lights)
+                     const Context& context, const EyeLights& lights)
     : world_(world),
       settings_(settings),
-      seed_(seed),
+      seed_(context.seed),
+      context_(context),
       lights_(lights),
       spatial_order_(visibility.exact()),
       first_segment_(visibility.cluster_edge() * visibility.cluster_edge()),
-      eye_paths_(world, view, {settings.specular_depth, settings.least_weight, seed}),
+      eye_paths_(world, view, {settings.specular_depth, settings.least_weight, context.seed}),
       worker_(visibility.worker()) {}
 
 void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& pass, Frame& frame, PassStatistics& statistics) {
+  // First-hit layers go to the frame with the eye paths: then the tile must be finished.
+  AovSet late;
+  for (const Aov aov : {Aov::direct, Aov::indirect, Aov::variance}) late.add(aov);
+  may_stop_ = (frame.aovs().bits() & ~late.bits()) == 0;
   eye_paths_.trace(tile, range, pass.samples, paths_, eye_samples_, frame, statistics.rays);
   for (EyeSample& e : eye_samples_) e.bsdf.prepare(e.frame.to_local(e.wo));
   put_in_order(tile);
@@ -102,7 +107,10 @@ void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
   for (auto* numbers : {&key_, &index_, &entry_}) numbers->resize(padded(chunk * per_eye));
   position_.resize(chunk * per_eye), normal_.resize(chunk * per_eye);
   light_.resize(chunk * per_eye + kLanes);  // runs that begin anywhere are read in whole vectors
-  for (std::size_t begin = 0; begin < order_.size(); begin += chunk) shade({begin, std::min(begin + chunk, order_.size())});
+  for (std::size_t begin = 0; begin < order_.size(); begin += chunk) {
+    if (may_stop_) context_.check_cancelled();
+    shade({begin, std::min(begin + chunk, order_.size())});
+  }
 }
 
 void EyeKernel::set_eye_ends(EyeRange chunk) {

@@ -32,10 +32,10 @@ struct EyeLights {
 /// Buffers of one thread.
 class EyeKernel {
  public:
-  EyeKernel(const World& world, const View& view, Visibility& visibility, const VisibilityCacheSettings& settings, std::uint64_t seed,
+  EyeKernel(const World& world, const View& view, Visibility& visibility, const VisibilityCacheSettings& settings, const Context& context,
             const EyeLights& lights);
 
-  /// Adds samples [range) of every pixel of the tile to the frame.
+  /// Adds samples [range) of every pixel of the tile to the frame. Throws Error{interrupted} when cancelled, and then has added nothing.
   void render_tile(const Tile& tile, SampleRange range, const EyePass& pass, Frame& frame, PassStatistics& statistics);
 
  private:
@@ -65,6 +65,8 @@ class EyeKernel {
   const World& world_;
   VisibilityCacheSettings settings_;
   std::uint64_t seed_;
+  const Context& context_;
+  bool may_stop_ = false;  ///< inside a tile: nothing of it is in the frame yet
   const EyeLights& lights_;
   bool spatial_order_;   ///< every query is a ray: neighbours side by side trace fastest
   float first_segment_;  ///< C_E²

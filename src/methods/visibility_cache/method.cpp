@@ -62,15 +62,15 @@ void VisibilityCacheMethod::render_pass(const RenderJob& job, SampleRange range,
         pass.virtual_lights.bsdf[j].prepare(pass.virtual_lights.frame[j].to_local(pass.virtual_lights.wi[j]));
       }
     }
+    statistics.method_statistics["virtual_lights"] += static_cast<double>(pass.virtual_lights.size);
     job.visibility->begin_pass({first, 0}, context);
     for_each_tile(context, frame, samples, statistics, [&](const Tile& tile, SampleRange missing, PassStatistics& local) {
       std::unique_ptr<EyeKernel>& kernel = kernels[static_cast<std::size_t>(worker_index()) % kernels.size()];
-      if (!kernel) kernel = std::make_unique<EyeKernel>(world, *job.view, *job.visibility, settings, context.seed, lights);
+      if (!kernel) kernel = std::make_unique<EyeKernel>(world, *job.view, *job.visibility, settings, context, lights);
       kernel->render_tile(tile, missing, pass, frame, local);
     });
     begin = samples.end;
   }
-  statistics.method_statistics["virtual_lights"] = settings.vpls > 0 && job.max_bounces > 0 ? settings.vpls : 0;
 }
 
 }  // namespace sightline

@@ -89,6 +89,7 @@ class AutomaticVisibility final : public Visibility {
   AutomaticVisibility(std::unique_ptr<Visibility> cached, std::unique_ptr<Visibility> exact)
       : cached_(std::move(cached)), exact_(std::move(exact)) {}
   bool binary() const override { return cached_->binary(); }
+  bool passes_are_independent() const override { return false; }
   float cluster_edge() const override { return cached_->cluster_edge(); }
   void begin_pass(const VisibilityPass& pass, const Context& context) override {
     trial_.set_context(context);

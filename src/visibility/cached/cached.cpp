@@ -1,9 +1,11 @@
 #include "visibility/cached/cached.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <utility>
 
+#include "base/core/error.h"
 #include "visibility/cached/core.h"
 #include "visibility/cached/separate_wave.h"
 #include "visibility/cached/wave.h"
@@ -17,6 +19,7 @@ class CachedVisibility final : public Visibility {
   CachedVisibility(std::shared_ptr<const World> world, const CachedVisibilitySettings& settings)
       : core_(std::make_shared<CacheCore>(std::move(world), settings)) {}
   bool binary() const override { return core_->settings.residual == 0; }
+  bool passes_are_independent() const override { return core_->settings.scope != CacheScope::frame && !core_->settings.reuse; }
   float cluster_edge() const override { return core_->settings.ce; }
   void begin_pass(const VisibilityPass& pass, const Context& context) override {
     const CachedVisibilitySettings& s = core_->settings;
@@ -47,6 +50,17 @@ class CachedVisibility final : public Visibility {
   std::mutex mutex_;  // of shared_ itself; waves of one time use it in turn
 };
 
+// Tables of all threads, and the shared one where it is asked for; a method uses one kind or the other.
+void check_memory(const CachedVisibilitySettings& s, const Context& context) {
+  const std::uint64_t limit = context.memory_budget_bytes;
+  if (limit == 0) return;
+  const std::uint64_t own = (std::uint64_t{sizeof(std::uint32_t)} << s.table_bits) * static_cast<std::uint64_t>(context.thread_count());
+  const std::uint64_t shared = std::uint64_t{sizeof(std::uint32_t)} << s.shared_table_bits;
+  if (std::max(own, shared) > limit - std::min(limit, current_resident_bytes()))
+    throw resource_error("the tables of the visibility cache do not fit in the memory limit")
+        .remedy("lower --set table_bits or shared_table_bits, or raise --memory-limit");
+}
+
 }  // namespace
 
 VisibilityInfo cached_visibility() {
@@ -56,7 +70,8 @@ VisibilityInfo cached_visibility() {
   info.citation = "Popov2013";
   info.unbiased = false;
   info.settings = SettingsValue::of<CachedVisibilitySettings>();
-  info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context&) -> std::unique_ptr<Visibility> {
+  info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context& context) -> std::unique_ptr<Visibility> {
+    check_memory(settings.as<CachedVisibilitySettings>(), context);
     return std::make_unique<CachedVisibility>(std::move(world), settings.as<CachedVisibilitySettings>());
   };
   return info;

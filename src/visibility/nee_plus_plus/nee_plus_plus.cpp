@@ -129,6 +129,7 @@ class NeePlusPlus final : public Visibility {
         limits_{static_cast<std::uint32_t>(settings.min_tests), settings.min_probability, settings.sure_from},
         learns_directions_(settings.directions > 0),
         map_(world_->bounds(), static_cast<std::uint32_t>(settings.resolution), static_cast<std::uint32_t>(settings.directions)) {}
+  bool passes_are_independent() const override { return false; }
   bool binary() const override { return false; }
   void begin_pass(const VisibilityPass&, const Context& context) override { map_.freeze(limits_, context); }
   std::unique_ptr<VisibilityWorker> worker() override { return std::make_unique<NeePlusPlusWorker>(*world_, map_, learns_directions_); }
