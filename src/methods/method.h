@@ -33,6 +33,9 @@ enum class MaterialKind : std::uint8_t {
 };
 std::string_view name_of(LightKind kind);
 std::string_view name_of(MaterialKind kind);
+/// Every kind, for methods that handle whatever a scene may hold.
+std::vector<LightKind> all_light_kinds();
+std::vector<MaterialKind> all_material_kinds();
 
 /// Facts about a method, as data: nobody compares method names.
 struct MethodInfo {

@@ -19,6 +19,18 @@ std::span<const Method* const> methods() {
   return table;
 }
 
+std::vector<LightKind> all_light_kinds() {
+  std::vector<LightKind> kinds;
+  for (int k = 0; k <= static_cast<int>(LightKind::environment); ++k) kinds.push_back(static_cast<LightKind>(k));
+  return kinds;
+}
+
+std::vector<MaterialKind> all_material_kinds() {
+  std::vector<MaterialKind> kinds;
+  for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) kinds.push_back(static_cast<MaterialKind>(k));
+  return kinds;
+}
+
 const Method& find_method(std::string_view name) {
   std::vector<std::string> known;
   for (const Method* method : methods()) {

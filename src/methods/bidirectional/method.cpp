@@ -209,8 +209,8 @@ const MethodInfo& BidirectionalMethod::info() const {
     i.help = "bidirectional path tracing with all strategies and the light image; connections may go through a visibility cache";
     i.citation = "Veach1997, Lafortune1993, Georgiev2012, Popov2013";
     i.unbiased = i.consistent = i.progressive = i.deterministic = true;
-    for (int k = 0; k <= static_cast<int>(LightKind::environment); ++k) i.lights.push_back(static_cast<LightKind>(k));
-    for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) i.materials.push_back(static_cast<MaterialKind>(k));
+    i.lights = all_light_kinds();
+    i.materials = all_material_kinds();
     return i;
   }();
   return info;

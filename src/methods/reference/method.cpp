@@ -56,8 +56,8 @@ const MethodInfo& ReferenceMethod::info() const {
     i.help = "path tracing with multiple importance sampling: the truth that other methods are compared with";
     i.citation = "Kajiya1986, Veach1997";
     i.unbiased = i.consistent = i.progressive = i.deterministic = true;
-    for (int k = 0; k <= static_cast<int>(LightKind::environment); ++k) i.lights.push_back(static_cast<LightKind>(k));
-    for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) i.materials.push_back(static_cast<MaterialKind>(k));
+    i.lights = all_light_kinds();
+    i.materials = all_material_kinds();
     return i;
   }();
   return info;

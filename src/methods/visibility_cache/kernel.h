@@ -16,7 +16,6 @@ namespace sightline {
 struct EyePass {
   std::uint32_t samples = 1;  ///< a pixel, in the whole pass
   int light_samples = 16;
-  std::uint64_t seed = 0;
   VirtualPointLights virtual_lights;
   std::vector<std::uint32_t> general_virtual_lights;  ///< those that are no Lamberts
 };

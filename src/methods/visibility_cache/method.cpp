@@ -17,8 +17,8 @@ const MethodInfo& VisibilityCacheMethod::info() const {
     i.help = "mirrors and glass followed, direct light and instant radiosity, with shadow rays shared by neighbours";
     i.citation = "Popov2013";
     i.progressive = i.deterministic = true;
-    for (int k = 0; k <= static_cast<int>(LightKind::environment); ++k) i.lights.push_back(static_cast<LightKind>(k));
-    for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) i.materials.push_back(static_cast<MaterialKind>(k));
+    i.lights = all_light_kinds();
+    i.materials = all_material_kinds();
     return i;
   }();
   return info;
@@ -45,7 +45,6 @@ void VisibilityCacheMethod::render_pass(const RenderJob& job, SampleRange range,
     EyePass pass;
     pass.samples = std::min(multiple, job.total_spp - std::min(first, job.total_spp - 1));
     pass.light_samples = job.light_samples > 0 ? job.light_samples : settings.light_samples;
-    pass.seed = context.seed;
     if (settings.vpls > 0 && job.max_bounces > 0) {
       VirtualPointLightOptions options;
       options.count = settings.vpls;
