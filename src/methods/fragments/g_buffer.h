@@ -1,0 +1,60 @@
+// What the camera sees at every pixel, as a structure of arrays over the whole picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/core/aligned.h"
+#include "base/math/vec.h"
+
+namespace sightline {
+
+/// The picture is worked off in root tiles of 128 x 128 pixels: fragments of the coarsest level, whose buffers stay in the L2 cache.
+inline constexpr int kRootSize = 128;
+inline constexpr int kRootLevel = 7;
+
+/// Pixels [x0, x1) x [y0, y1); x0 and y0 are multiples of kRootSize, x1 and y1 are cut off at the picture's edge.
+struct RootTile {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// What lies under a pixel, as far as this method has to know.
+enum class PixelKind : std::uint8_t {
+  background,  ///< nothing was hit
+  emitter,     ///< a surface that emits: shows its radiance alone
+  dark,        ///< a surface that reflects no direct light: mirrors, glass
+  diffuse,     ///< Lambert: albedo says all
+  analytic,    ///< Lambert plus a lobe that linearly transformed cosines describe
+  general,     ///< any other material: always sampled, never interpolated
+};
+
+/// Row-major with `stride` elements a row; stride and rows are multiples of kRootSize, and what lies outside the picture is background.
+/// Normals are on the viewer's side.
+struct GBuffer {
+  int width = 0, height = 0, stride = 0, rows = 0;
+  Vec3Batch position, geometric_normal, shading_normal;
+  AlignedVector<float> error;  ///< bound on the error of `position`, per component
+  AlignedVector<float> depth;  ///< distance from the camera; +infinity for background
+  Vec3Batch albedo;            ///< of `diffuse` pixels, and the Lambert part of `analytic` ones
+  AlignedVector<PixelKind> kind;
+
+  void resize(int picture_width, int picture_height) {
+    width = picture_width, height = picture_height;
+    stride = (width + kRootSize - 1) / kRootSize * kRootSize, rows = (height + kRootSize - 1) / kRootSize * kRootSize;
+    const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
+    position.resize(n), geometric_normal.resize(n), shading_normal.resize(n), albedo.resize(n);
+    error.resize(n), depth.resize(n), kind.resize(n);
+  }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
+  }
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+  std::size_t root_count() const { return static_cast<std::size_t>((stride / kRootSize) * (rows / kRootSize)); }
+  RootTile root(std::size_t index) const {
+    const int columns = stride / kRootSize, i = static_cast<int>(index);
+    const int x0 = i % columns * kRootSize, y0 = i / columns * kRootSize;
+    return {x0, y0, x0 + kRootSize < width ? x0 + kRootSize : width, y0 + kRootSize < height ? y0 + kRootSize : height};
+  }
+};
+
+}  // namespace sightline
