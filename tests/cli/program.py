@@ -1,16 +1,22 @@
-"""Runs the program and reads what it makes; shared by the tests of the command line and of robustness."""
+"""Runs the program and reads what it makes; shared by the tests of the command line.
+
+Usage of each of them: NAME_test.py PROGRAM [CLASS...], or NAME_test.py --expect-groups CLASS...
+"""
 import json
 import os
 import pathlib
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 import zlib
 
 # Set by main().
 PROGRAM = None
+
+COMMANDS = ("render", "compare", "methods", "info", "bench", "gallery", "merge")
 
 
 class Run:
@@ -71,6 +77,29 @@ class ProgramTest(unittest.TestCase):
         return sorted(path.name for path in self.folder.iterdir())
 
 
+class Running:
+    """A render that would take very long, once its first samples are in."""
+
+    def __init__(self, test, *arguments, scene="builtin:cornell"):
+        self.process = subprocess.Popen([PROGRAM, "render", scene, "--size", "64x48", "--spp", "100000000", "--progress", "json", *arguments],
+                                        cwd=test.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment())
+        test.addCleanup(self.process.stderr.close)
+        test.addCleanup(self.process.wait)
+        test.addCleanup(self.process.kill)
+        self.lines = []
+        while True:
+            line = self.process.stderr.readline().decode()
+            if not line:
+                raise AssertionError("ended early: " + "".join(self.lines))
+            self.lines.append(line)
+            if line.startswith("{") and json.loads(line).get("spp", 0) >= 2:
+                return
+
+    def end(self, timeout=30):
+        self.lines += self.process.stderr.read().decode().splitlines(keepends=True)
+        return self.process.wait(timeout)
+
+
 def exr_header_end(data):
     at = 8
     while data[at]:
@@ -126,3 +155,13 @@ def png_pixels(data):
             packed += data[at + 8:at + 8 + size]
         at += 12 + size
     return zlib.decompress(packed)
+
+
+def main(module):
+    """Runs the test classes of `module` (its globals()) that the command line names, or checks that it names all of them."""
+    groups = sorted(name for name, value in module.items() if isinstance(value, type) and issubclass(value, ProgramTest) and value is not ProgramTest)
+    if sys.argv[1] == "--expect-groups":
+        sys.exit(0 if groups == sorted(sys.argv[2:]) else f"CMakeLists.txt lists {sorted(sys.argv[2:])}, this file has {groups}")
+    global PROGRAM
+    PROGRAM = os.path.abspath(sys.argv[1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=1)

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""Tests of the command line as users meet it: methods, files and benchmarks described."""
+import json
+import math
+import pathlib
+import re
+
+from program import COMMANDS, png_size, ProgramTest, main
+
+
+class Methods(ProgramTest):
+    def test_a_setting_described_once_appears_everywhere(self):
+        listing = json.loads(self.ok("methods", "--json").out)
+        self.assertIn("reference", [method["name"] for method in listing["methods"]])
+        self.assertIn("exact", [visibility["name"] for visibility in listing["visibilities"]])
+        for kind in ("methods", "visibilities"):
+            for entry in listing[kind]:
+                self.assertEqual(json.loads(self.ok("methods", entry["name"], "--json").out)["settings"], entry["settings"])
+                text = self.ok("methods", entry["name"]).out.decode()
+                for setting in entry["settings"]:
+                    self.assertIn(setting["help"], text)
+                    default = setting["default"]
+                    shown = str(default).lower() if isinstance(default, bool) else str(default)
+                    self.assertIn(f"{setting['name']}={shown}", text)
+
+    def test_visibilities_state_their_facts(self):
+        facts = {entry["name"]: entry for entry in json.loads(self.ok("methods", "--json").out)["visibilities"]}
+        for name, entry in facts.items():
+            self.assertEqual(json.loads(self.ok("methods", name, "--json").out), entry)
+            text = self.ok("methods", name).out.decode()
+            self.assertIn(entry["help"], text)
+            self.assertIn(entry["citation"], text)
+            stated = text.splitlines()[1].strip().split(", ")
+            for fact in ("binary", "unbiased", "deterministic"):
+                self.assertIn(fact if entry[fact] else f"not {fact}", stated, name)
+            self.assertIn(name, self.ok("methods").out.decode())
+        self.assertTrue(facts["exact"]["unbiased"] and facts["exact"]["binary"])
+        self.assertFalse(facts["shadow-map"]["unbiased"])
+        self.assertTrue(facts["nee++"]["unbiased"])
+        self.assertFalse(facts["nee++"]["binary"])
+
+    def test_every_setting_of_a_visibility_can_be_set(self):
+        for visibility in json.loads(self.ok("methods", "--json").out)["visibilities"]:
+            for setting in visibility["settings"]:
+                for value in setting.get("choices", [setting["default"]]):
+                    text = str(value).lower() if isinstance(value, bool) else str(value)
+                    self.ok("render", "builtin:cornell", "--visibility", visibility["name"], "--set", f"{setting['name']}={text}", "--size", "8x8",
+                            "--spp", "2", "-o", "a.png", "--stats", "a.json")
+                    statistics = self.json("a.json")
+                    self.assertEqual(statistics["visibility_name"], visibility["name"])
+                    self.assertEqual(str(statistics["settings"][setting["name"]]), str(value))
+
+    def test_every_setting_can_be_set(self):
+        for method in json.loads(self.ok("methods", "--json").out)["methods"]:
+            for setting in method["settings"]:
+                values = setting.get("choices", [setting["default"]])
+                for value in values:
+                    text = str(value).lower() if isinstance(value, bool) else str(value)
+                    self.ok("render", "builtin:cornell", "--method", method["name"], "--set", f"{setting['name']}={text}", "--size", "8x8", "--spp", "2",
+                            "-o", "a.png", "--stats", "a.json")
+                    self.assertEqual(self.json("a.json")["settings"][setting["name"]], value)
+
+    def test_documentation_names_every_method_and_option(self):
+        docs = pathlib.Path(__file__).resolve().parents[2] / "docs"
+        text = "\n".join(page.read_text() for page in docs.rglob("*.md"))
+        for method in json.loads(self.ok("methods", "--json").out)["methods"]:
+            self.assertIn(f"`{method['name']}`", text)
+        for visibility in json.loads(self.ok("methods", "--json").out)["visibilities"]:
+            self.assertIn(f"`{visibility['name']}`", text)
+        page = (docs / "cli.md").read_text()
+        for command in COMMANDS:
+            self.assertIn(f"`{command}", page)
+        for option in set(re.findall(r"--[a-z][a-z-]+", self.ok("render", "--help").out.decode())):
+            if option not in ("--help", "--help-all"):
+                self.assertIn(option, page)
+
+
+class Info(ProgramTest):
+    def test_scene(self):
+        scene = json.loads(self.ok("info", "--json", "builtin:cornell").out)
+        self.assertEqual(scene["kind"], "scene")
+        for key in ("triangles", "bounds", "materials", "lights", "cameras", "warnings", "animation_seconds"):
+            self.assertIn(key, scene)
+        self.assertIn("triangles", self.ok("info", "builtin:cornell").out.decode())
+
+    def test_picture_and_slice(self):
+        self.render("-o", "a.exr", "-o", "a.png", "-o", "a.hdr", "-o", "a.slice", "--aov", "depth")
+        exr = json.loads(self.ok("info", "--json", "a.exr").out)
+        self.assertEqual(exr["size"], [32, 24])
+        self.assertIn("depth.Z", [channel["name"] for channel in exr["channels"]])
+        self.assertEqual(exr["metadata"]["sightline.statistics"]["method"], "reference")
+        slice_ = json.loads(self.ok("info", "--json", "a.slice").out)
+        self.assertEqual((slice_["kind"], slice_["samples_done"]), ("frame", 2))
+        several = json.loads(self.ok("info", "--json", "a.png", "a.hdr").out)
+        self.assertEqual([entry["size"] for entry in several], [[32, 24], [32, 24]])
+
+    def test_builtin_scenes(self):
+        text = self.ok("info", "builtin:").out.decode()
+        listing = json.loads(self.ok("info", "--json", "builtin:").out)
+        for scene in listing["scenes"]:
+            self.assertIn("builtin:" + scene["name"], text)
+        self.assertIn("triangles", [scene for scene in listing["scenes"] if scene["name"] == "hairball"][0]["parameters"])
+
+    def test_missing_files(self):
+        self.fails(3, "info", "missing.gltf", says="missing.gltf")
+        self.fails(3, "info", "missing.exr", says="missing.exr")
+        self.fails(3, "render", "missing.obj", "-o", "a.exr", says="missing.obj")
+        self.fails(3, "info", ".", says=".")
+        self.fails(3, "render", "missing\nname.obj", "-o", "a.exr", says="missing")
+
+
+class Bench(ProgramTest):
+    SMALL = ("bench", "visibility-cache", "--quick", "--view", "builtin:cornell", "--size", "48x40", "--threads", 2)
+
+    def test_all_parts_of_the_visibility_cache_suite(self):
+        self.ok(*self.SMALL, "--ce", "8", "--spp", "1,2", "--json", "a.json", "--markdown", "a.md", "--html", "a.html", "--strip", "a.png")
+        results = self.json("a.json")
+        self.assertEqual((results["suite"], results["threads"], results["quick"], results["interrupted"]), ("visibility-cache", 2, True, False))
+        curves = results["curves"][0]
+        self.assertEqual((curves["view"], curves["size"]), ("builtin:cornell", [48, 40]))
+        self.assertEqual([sample["spp"] for sample in curves["samples"]], [1, 2])
+        rows = [row for sample in curves["samples"] for row in sample["cached"]] + results["ablations"][0]["rows"]
+        for row in rows:
+            self.assertGreater(row["share_traced"], 0, row)
+            self.assertLessEqual(row["share_traced"], 1, row)
+            for key in ("linf", "flip", "l2", "signed_error", "seconds", "speed_up", "lookups_per_query"):
+                self.assertTrue(math.isfinite(row[key]), (key, row))
+            self.assertLess(abs(row["signed_error"]), row["linf"] + 1e-9)
+            self.assertLess(row["linf"], 0.5, row)
+            self.assertAlmostEqual(row["ray_reduction"], 1 / row["share_traced"] - 1, 6)
+        equal_time = results["equal_time"][0]["rows"]
+        self.assertEqual(len(equal_time), 5)
+        self.assertTrue(all(math.isfinite(row["linf"]) and row["spp"] >= 1 and row["light_samples"] >= 1 for row in equal_time))
+        self.assertEqual(results["shadow_maps"], [])
+        lookup = results["lookup"][0]
+        self.assertGreater(lookup["exact"]["bare_mray_per_s"], 0)
+        for row in lookup["rows"]:
+            self.assertGreater(row["ns_per_query"], 0)
+            self.assertGreater(row["misses"], 0)
+        self.assertEqual([row["visibility"] for row in lookup["frames"]], ["exact", "cached", "cached"])
+        self.assertTrue(all(0 < row["visibility_share"] <= 1.01 for row in lookup["frames"]))
+        depth_0, refined = lookup["rows"][:2]
+        self.assertEqual(depth_0["lookups_per_query"], 1)
+        self.assertGreater(refined["lookups_per_query"], 1)
+        self.assertLessEqual(0, results["flicker"][0]["flicker"])
+        self.assertLess(results["flicker"][0]["flicker"], 0.5)
+        self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (6 * 24, 3 * 20))
+        page = (self.folder / "a.html").read_text()
+        self.assertGreaterEqual(page.count("<svg"), 9)
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
+        self.assertIn("### Ablations", (self.folder / "a.md").read_text())
+
+    def test_one_part_alone(self):
+        results = json.loads(self.ok(*self.SMALL, "--part", "flicker", "--json", "-").out)
+        self.assertEqual([key for key in ("curves", "equal_time", "shadow_maps", "lookup", "flicker", "ablations") if results[key]], ["flicker"])
+
+    def test_wrong_names_and_missing_data(self):
+        self.fails(2, "bench", "visibility-cach", says="visibility-cache")
+        self.fails(2, "bench", "visibility-cache", "--part", "curve", says="curves")
+        self.fails(2, "bench", "visibility-cache", "--view", "sponza-curt", says="sponza-court")
+        self.fails(2, "bench", "visibility-cache", "--ce", "0")
+        self.fails(2, "bench", "visibility-cache", "--spp", "1,x")
+        self.fails(2, "bench", "trace", "--part", "curves", says="visibility-cache")
+        self.fails(2, "bench", "visibility-cache", "--json", "missing/a.json", says="missing")
+        run = self.ok("bench", "visibility-cache", "--view", "kitchen", "--data", ".", "--json", "-")
+        self.assertIn("kitchen", run.err)
+        self.assertEqual(json.loads(run.out)["curves"], [])
+
+
+if __name__ == "__main__":
+    main(globals())
