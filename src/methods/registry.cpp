@@ -5,6 +5,7 @@
 
 #include "base/core/error.h"
 #include "methods/bidirectional/method.h"
+#include "methods/fragments/method.h"
 #include "methods/method.h"
 #include "methods/reference/method.h"
 #include "methods/visibility_cache/method.h"
@@ -15,7 +16,8 @@ std::span<const Method* const> methods() {
   static const ReferenceMethod reference;
   static const BidirectionalMethod bidirectional;
   static const VisibilityCacheMethod visibility_cache;
-  static const std::array<const Method*, 3> table = {&reference, &bidirectional, &visibility_cache};
+  static const FragmentsMethod fragments;
+  static const std::array<const Method*, 4> table = {&reference, &bidirectional, &visibility_cache, &fragments};
   return table;
 }
 

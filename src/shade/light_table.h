@@ -16,6 +16,9 @@
 
 namespace sightline {
 
+struct FlatLight;
+struct FlatEmitter;
+
 /// An entry of the table: one point, spot, directional, rectangle, disk or sphere light, one emissive triangle, or the environment.
 inline constexpr std::uint32_t kNoLight = 0xffffffffu;
 
@@ -135,6 +138,9 @@ class LightTable {
   float area(std::uint32_t light) const;
   /// Total power by entry, W, as the picker sees it.
   float power(std::uint32_t light) const;
+  /// A rectangle, triangle or disk; null for other lights. (See lights/flat_light.h.)
+  const FlatLight* flat(std::uint32_t light) const;
+  const FlatEmitter* flat_emitter(std::uint32_t light) const;
 
  private:
   struct Impl;

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/core/aligned.h"
+#include "base/math/frame.h"
 #include "base/math/vec.h"
+#include "shade/bsdf.h"
 
 namespace sightline {
 
@@ -28,6 +31,13 @@ enum class PixelKind : std::uint8_t {
   general,     ///< any other material: always sampled, never interpolated
 };
 
+/// A shading point with more to it than Lambert's law.
+struct GlossyPoint {
+  Bsdf bsdf;
+  Frame3 frame;
+  Vec3 wo{0};  ///< unit, towards the camera
+};
+
 /// Row-major with `stride` elements a row; stride and rows are multiples of kRootSize, and what lies outside the picture is background.
 /// Normals are on the viewer's side.
 struct GBuffer {
@@ -37,19 +47,27 @@ struct GBuffer {
   AlignedVector<float> depth;  ///< distance from the camera; +infinity for background
   Vec3Batch albedo;            ///< of `diffuse` pixels, and the Lambert part of `analytic` ones
   AlignedVector<PixelKind> kind;
+  AlignedVector<std::uint8_t> back;              ///< 1: seen from behind, normals were turned
+  AlignedVector<std::uint32_t> glossy_index;     ///< of `analytic` pixels: into their root tile's list
+  std::vector<std::vector<GlossyPoint>> glossy;  ///< by root tile
 
   void resize(int picture_width, int picture_height) {
     width = picture_width, height = picture_height;
     stride = (width + kRootSize - 1) / kRootSize * kRootSize, rows = (height + kRootSize - 1) / kRootSize * kRootSize;
     const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
     position.resize(n), geometric_normal.resize(n), shading_normal.resize(n), albedo.resize(n);
-    error.resize(n), depth.resize(n), kind.resize(n);
+    error.resize(n), depth.resize(n), kind.resize(n), back.resize(n), glossy_index.resize(n);
+    glossy.resize(root_count());
   }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
   }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
   std::size_t root_count() const { return static_cast<std::size_t>((stride / kRootSize) * (rows / kRootSize)); }
+  std::size_t root_of(int x, int y) const {
+    return static_cast<std::size_t>(y / kRootSize) * static_cast<std::size_t>(stride / kRootSize) + static_cast<std::size_t>(x / kRootSize);
+  }
+  const GlossyPoint& glossy_at(int x, int y) const { return glossy[root_of(x, y)][glossy_index[at(x, y)]]; }
   RootTile root(std::size_t index) const {
     const int columns = stride / kRootSize, i = static_cast<int>(index);
     const int x0 = i % columns * kRootSize, y0 = i / columns * kRootSize;

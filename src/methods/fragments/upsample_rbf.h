@@ -36,7 +36,7 @@ struct RbfRegion {
 
 /// Writes texel (x0 + i, y0 + j) to out[c][j * out_stride + i], for i < columns and j < rows. The definition.
 void rbf_region(const RbfRegion& region, int columns, int rows, const std::array<float*, 3>& out, std::size_t out_stride);
-/// The same within 1e-4 of the samples' range, many texels at a time.
+/// The same within a thousandth of the samples' range (the matrix may be nearly singular), many texels at a time.
 void rbf_region_lanes(const RbfRegion& region, int columns, int rows, const std::array<float*, 3>& out, std::size_t out_stride);
 
 }  // namespace sightline

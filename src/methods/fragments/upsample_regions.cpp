@@ -84,7 +84,7 @@ class Gatherer {
     std::array<float*, 3> corner = out;
     for (std::size_t c = 0; c < static_cast<std::size_t>(cells_.channels()); ++c)
       corner[c] += static_cast<std::size_t>(dy) * out_stride + static_cast<std::size_t>(dx);
-    rbf_region(region, columns, rows, corner, out_stride);
+    rbf_region_lanes(region, columns, rows, corner, out_stride);
   }
 
  private:
@@ -134,7 +134,10 @@ void interpolate_corners(const SignalCells& cells, const Cell& cell, bool adapti
     const bool on_left_edge = x == other.x;
     const int s = other.size / 2, from_x = on_left_edge ? x : x & ~(s - 1), from_y = on_left_edge ? y & ~(s - 1) : y;
     const int to_x = on_left_edge ? x : from_x + s, to_y = on_left_edge ? from_y + s : y;
-    const auto known = [&](int px, int py) { return cells.g().inside(px, py) && cells.has_extra(px, py) && cells.speaks(px, py); };
+    const auto known = [&](int px, int py) {
+      return cells.g().inside(px, py) && cells.has_extra(px, py) && cells.speaks(px, py) &&
+             cells.connected(cells.g().at(x, y), cells.g().at(px, py));
+    };
     if (!known(from_x, from_y) || !known(to_x, to_y)) return;
     const SignalSample a = cells.extra(from_x, from_y), b = cells.extra(to_x, to_y);
     const float t = static_cast<float>(x - from_x + y - from_y) / static_cast<float>(s);

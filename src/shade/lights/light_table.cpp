@@ -254,6 +254,14 @@ float LightTable::area(std::uint32_t light) const {
   return 2 * kPi * radius * radius;
 }
 
+const FlatLight* LightTable::flat(std::uint32_t light) const {
+  return light < impl_->lists.punctual_begin ? &impl_->lists.flats[light] : nullptr;
+}
+const FlatEmitter* LightTable::flat_emitter(std::uint32_t light) const {
+  const FlatLight* found = flat(light);
+  return found ? &impl_->lists.emitters[found->emitter] : nullptr;
+}
+
 float LightTable::power(std::uint32_t light) const { return light < impl_->lists.size() ? impl_->lists.powers[light] : 0.f; }
 
 }  // namespace sightline

@@ -1,0 +1,145 @@
+#include "methods/fragments/camera_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/math/vec3_batch.h"
+#include "base/sample/sobol.h"
+#include "methods/fragments/analytic_kind.h"
+#include "shade/material_eval.h"
+
+namespace sightline {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, bool sample_all, Visibility* visibility)
+    : world_(world), view_(view), seed_(seed), sample_all_(sample_all), sampled_(world, view, light_samples, visibility) {
+  for (auto* indices : {&pixel_, &key_, &sample_}) indices->resize(kBatch);
+  for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(kBatch);
+  inside_.resize(kBatch), plain_.resize(kBatch);
+  bsdf_.resize(kBatch), frame_.resize(kBatch), kind_.resize(kBatch);
+  light_.resize(kBatch);
+}
+
+void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec3Batch& radiance, PassStatistics& statistics) {
+  const RootTile tile = g.root(index);
+  g.glossy[index].clear();
+  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) std::fill_n(g.kind.data() + g.at(tile.x0, y), kRootSize, PixelKind::background);
+  sampled_.begin(static_cast<std::uint32_t>(index));
+  // Camera rays travel in packets of 4 x 4 pixels, as the reference's do: an answer at a tie depends on the company a ray keeps.
+  count_ = 0;
+  const auto flush = [&] {
+    if (count_ == 0) return;
+    trace(sample, statistics);
+    evaluate_materials();
+    emit();
+    to_sample_.clear();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const bool surface = kind_[i] != PixelKind::background && kind_[i] != PixelKind::dark;
+      if (surface && hits_.hit(i) && (sample_all_ || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
+        to_sample_.push_back(i);
+    }
+    sampled_.shade({&rays_, &hits_, &surfaces_, &bsdf_, &frame_, plain_.data(), key_.data(), sample}, to_sample_, light_, statistics);
+    write(index, g, radiance);
+    count_ = 0;
+  };
+  for (int by = tile.y0; by < tile.y1; by += kBlock) {
+    for (int bx = tile.x0; bx < tile.x1; bx += kBlock) {
+      for (int i = 0; i < static_cast<int>(kLanes); ++i, ++count_) {
+        const int x = bx + i % kBlock, y = by + i / kBlock;
+        inside_[count_] = x < tile.x1 && y < tile.y1;
+        pixel_[count_] = static_cast<std::uint32_t>(std::min(y, tile.y1 - 1) * view_.width() + std::min(x, tile.x1 - 1));
+        key_[count_] = pixel_key(seed_, pixel_[count_]);
+      }
+      if (count_ == kBatch) flush();
+    }
+  }
+  flush();
+}
+
+void CameraPass::trace(std::uint32_t sample, PassStatistics& statistics) {
+  rays_.resize(count_);
+  std::fill_n(sample_.data(), count_, sample);
+  sobol_2d(key_.data(), sample_.data(), dimension::kPixel, count_, u0_.data(), u1_.data());
+  if (view_.has_lens()) sobol_2d(key_.data(), sample_.data(), dimension::kLens, count_, u2_.data(), u3_.data());
+  view_.primary_rays(pixel_.data(), u0_.data(), u1_.data(), u2_.data(), u3_.data(), count_,
+                     {rays_.origin.x.data(), rays_.origin.y.data(), rays_.origin.z.data(), rays_.direction.x.data(),
+                      rays_.direction.y.data(), rays_.direction.z.data()});
+  for (std::size_t i = 0; i < count_; ++i) rays_.t_far[i] = inside_[i] ? kInfinity : -1.f;
+  std::fill_n(rays_.t_near.data(), count_, 0.f);
+  world_.tracer().intersect(rays_, hits_, BatchKind::primary, statistics.rays);
+  world_.surfaces(rays_, hits_, surfaces_);
+}
+
+void CameraPass::evaluate_materials() {
+  const Scene& scene = world_.scene();
+  for (std::size_t i = 0; i < count_; ++i) {
+    plain_[i] = hits_.hit(i) && surfaces_.plain[i];
+    kind_[i] = plain_[i] ? PixelKind::diffuse : PixelKind::background;
+    if (!hits_.hit(i) || plain_[i]) continue;
+    const Vec3 wo = -load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
+    const MaterialId id = surfaces_.material[i] == kDefaultMaterial ? MaterialId{} : MaterialId{surfaces_.material[i]};
+    const SurfaceDetail detail = world_.detail(rays_, hits_, i, view_.cone_width() + view_.cone_spread() * hits_.t[i]);
+    float u_mix = sobol_2d(key_[i], sample_[i], dimension::pair_of(0, dimension::kLightPick)).y;
+    const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
+    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
+    if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
+    bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
+    kind_[i] = kind_of(bsdf_[i]);
+  }
+}
+
+// Light that surfaces and the environment send to the camera by themselves.
+void CameraPass::emit() {
+  const LightTable& lights = world_.lights();
+  fill(light_, 0, count_, Color(0));
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!inside_[i]) continue;
+    const Vec3 direction = load(rays_.direction, i);
+    if (!hits_.hit(i)) {
+      if (lights.has_environment()) store(light_, i, lights.environment(direction));
+      continue;
+    }
+    if (surfaces_.light[i] == kNoLight) continue;
+    kind_[i] = PixelKind::emitter;
+    TexturePoint texture;
+    if (!surfaces_.plain[i]) texture = world_.detail(rays_, hits_, i, view_.cone_width() + view_.cone_spread() * hits_.t[i]).texture;
+    store(light_, i, lights.emission(surfaces_.light[i], texture, glm::dot(load(surfaces_.geometric_normal, i), direction) < 0));
+  }
+}
+
+void CameraPass::write(std::size_t root, GBuffer& g, Vec3Batch& radiance) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!inside_[i]) continue;
+    const int x = static_cast<int>(pixel_[i]) % view_.width(), y = static_cast<int>(pixel_[i]) / view_.width();
+    const std::size_t at = g.at(x, y);
+    store(radiance, at, load(light_, i));
+    if (!hits_.hit(i)) {
+      g.depth[at] = kInfinity;
+      continue;
+    }
+    const Vec3 direction = load(rays_.direction, i), position = load(surfaces_.position, i);
+    const Vec3 geometric = load(surfaces_.geometric_normal, i);
+    // Plain surfaces: shading normals give way where they do not see the camera on the side on which the geometric normal does.
+    Vec3 shading = plain_[i] ? load(surfaces_.shading_normal, i) : frame_[i].normal;
+    if (glm::dot(direction, shading) * glm::dot(direction, geometric) <= 0) shading = geometric;
+    const float side = glm::dot(direction, geometric) > 0 ? -1.f : 1.f;
+    const Color albedo = plain_[i] ? load(surfaces_.albedo, i) : bsdf_[i].albedo();
+    g.kind[at] = kind_[i], g.back[at] = side < 0;
+    g.depth[at] = hits_.t[i];
+    g.error[at] = surfaces_.error[i];
+    store(g.position, at, position), store(g.geometric_normal, at, side * geometric), store(g.shading_normal, at, side * shading);
+    store(g.albedo, at, albedo);
+    if (kind_[i] == PixelKind::diffuse && !plain_[i]) store(g.albedo, at, lambert_albedo(bsdf_[i]));
+    if (kind_[i] == PixelKind::analytic) {
+      g.glossy_index[at] = static_cast<std::uint32_t>(g.glossy[root].size());
+      g.glossy[root].push_back({bsdf_[i], frame_[i], -direction});
+    }
+  }
+}
+
+}  // namespace sightline

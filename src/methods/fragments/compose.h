@@ -1,0 +1,26 @@
+// From the signal of a light to radiance: the last stage.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "methods/fragments/area_light.h"
+#include "methods/fragments/g_buffer.h"
+
+namespace sightline {
+
+/// Buffers of one thread.
+class Composer {
+ public:
+  /// radiance += light of `light` at the pixels of `tile`; signal[c] is laid out as `g`: one channel is the visible share of the analytic
+  /// term, three are irradiance / pi. Albedo comes last.
+  void add(const GBuffer& g, const RootTile& tile, const AreaLight& light, std::span<const float* const> signal, Vec3Batch& radiance);
+
+ private:
+  std::vector<std::uint32_t> pixels_;
+  Vec3Batch position_, normal_;
+  AlignedVector<float> form_factor_;
+};
+
+}  // namespace sightline

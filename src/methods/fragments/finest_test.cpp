@@ -1,0 +1,129 @@
+#include "methods/fragments/finest_test.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/math/vec3_batch.h"
+#include "base/sample/sobol.h"
+#include "methods/fragments/unshadowed.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::size_t kLanesAtOnce = 1024;
+
+}  // namespace
+
+FinestTest::FinestTest(const World& world, const View& view, Visibility& visibility, const FinestOptions& options, std::uint64_t seed)
+    : world_(world),
+      options_(options),
+      footprint_(view, 1.f),
+      camera_(view.pinhole().position),
+      orthographic_(view.pinhole().orthographic),
+      exact_(visibility.exact()),
+      seed_(seed),
+      worker_(visibility.worker()) {}
+
+void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, int channels,
+                      std::array<std::vector<float>, 3>& values, PassStatistics& statistics) {
+  const bool ratio = channels == 1;
+  for (int c = 0; c < channels; ++c) values[static_cast<std::size_t>(c)].resize(pixels.size());
+  sums_.assign(pixels.size(), {});
+  open_.resize(pixels.size());
+  std::iota(open_.begin(), open_.end(), 0u);
+  const std::uint32_t first = options_.early_out ? std::max(options_.rays / 4, 16u) : options_.rays;
+  trace(g, light, pixels, open_, sample, 0, std::min(first, options_.rays), ratio, statistics);
+  if (first < options_.rays) {
+    std::erase_if(open_, [&](std::uint32_t i) { return sums_[i].seen == 0 || sums_[i].seen == sums_[i].asked; });
+    trace(g, light, pixels, open_, sample, first, options_.rays - first, ratio, statistics);
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Sums& s = sums_[i];
+    if (ratio) {
+      values[0][i] = s.seen == 0 ? 0.f : s.seen == s.asked ? 1.f : s.visible / s.all;
+      continue;
+    }
+    // Those that stopped early have a quarter of the samples.
+    const float scale = static_cast<float>(options_.rays) / static_cast<float>(first);
+    const bool stopped = first < options_.rays && (s.seen == 0 || s.seen == s.asked) && !std::binary_search(open_.begin(), open_.end(), i);
+    for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = s.irradiance[c] * (stopped ? scale : 1.f);
+  }
+}
+
+void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels,
+                       std::span<const std::uint32_t> which, std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio,
+                       PassStatistics& statistics) {
+  const std::size_t at_once = std::max<std::size_t>(kLanesAtOnce / count, 1), lanes = at_once * count;
+  position_.resize(lanes), key_.resize(padded(lanes)), index_.resize(padded(lanes)), entry_.resize(padded(lanes));
+  u0_.resize(padded(lanes)), u1_.resize(padded(lanes)), selection_.resize(padded(lanes)), term_.resize(padded(lanes));
+  for (std::size_t begin = 0; begin < which.size(); begin += at_once) {
+    const std::size_t points = std::min(at_once, which.size() - begin), n = points * count;
+    queries_.eye.resize(points);
+    for (std::size_t p = 0; p < points; ++p) {
+      const std::uint32_t at = pixels[which[begin + p]];
+      const auto x = static_cast<std::uint32_t>(at % static_cast<std::uint32_t>(g.stride)), y = at / static_cast<std::uint32_t>(g.stride);
+      const Vec3 position = load(g.position, at), normal = load(g.geometric_normal, at);
+      float area = 0;
+      if (!exact_) area = footprint_.area(orthographic_ ? camera_ : normalize_or(position - camera_, -normal), g.depth[at], normal);
+      queries_.eye.set(p, position, normal, g.error[at], area, at);
+      std::fill_n(key_.data() + p * count, count, pixel_key(seed_, y * static_cast<std::uint32_t>(g.width) + x));
+      std::iota(index_.data() + p * count, index_.data() + (p + 1) * count, sample * options_.rays + first);
+      fill(position_, p * count, count, position);
+    }
+    sobol_2d(key_.data(), index_.data(), dimension::pair_of(0, dimension::kLightPoint), n, u0_.data(), u1_.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const AreaLight::Member& member = light.members[light.pick(u0_[i])];
+      entry_[i] = member.entry, selection_[i] = member.probability * static_cast<float>(options_.rays);
+    }
+    world_.lights().sample_entries(entry_, selection_, position_, u0_, u1_, n, light_);
+
+    queries_.resize_lights(n), queries_.resize_queries(n);
+    std::copy_n(light_.point.x.data(), n, queries_.light.position.x.data());
+    std::copy_n(light_.point.y.data(), n, queries_.light.position.y.data());
+    std::copy_n(light_.point.z.data(), n, queries_.light.position.z.data());
+    std::copy_n(light_.normal.x.data(), n, queries_.light.normal.x.data());
+    std::copy_n(light_.normal.y.data(), n, queries_.light.normal.y.data());
+    std::copy_n(light_.normal.z.data(), n, queries_.light.normal.z.data());
+    std::copy_n(light_.point_error.data(), n, queries_.light.error.data());
+    std::copy_n(index_.data(), n, queries_.light.id.data());
+    std::fill_n(queries_.semantic.data(), n, static_cast<std::uint8_t>(QuerySemantic::surface));
+    queries_.kind = BatchKind::shadow;
+    queries_.surface_ends = SurfaceEnds::area_light;
+    for (std::size_t p = 0; p < points; ++p) {
+      const std::uint32_t at = pixels[which[begin + p]];
+      const Receiver receiver = receiver_at(g, static_cast<int>(at % static_cast<std::uint32_t>(g.stride)),
+                                            static_cast<int>(at / static_cast<std::uint32_t>(g.stride)));
+      Sums& sums = sums_[which[begin + p]];
+      for (std::size_t i = p * count; i < (p + 1) * count; ++i) {
+        // cos / (pi pdf): irradiance / pi of unit radiance.
+        const Vec3 wi = load(light_.wi, i);
+        const float cosine = glm::dot(wi, receiver.shading_normal);
+        const bool reaches = cosine > 0 && glm::dot(wi, receiver.geometric_normal) > 0 && light_.pdf[i] > 0;
+        float term = reaches ? cosine * kInvPi / light_.pdf[i] : 0.f;
+        if (reaches && ratio) {
+          term *= luminance(load(light_.radiance, i));
+          if (receiver.glossy) term *= lobe_weight(receiver, wi);
+        }
+        term_[i] = term;
+        sums.all += term;
+        queries_.eye_of[i] = static_cast<std::uint32_t>(p), queries_.light_of[i] = term > 0 ? static_cast<std::uint32_t>(i) : kNoQuery;
+        queries_.light.cell_area[i] = world_.lights().area(entry_[i]) / selection_[i];
+      }
+    }
+    weights_.resize(std::max(weights_.size(), padded(n) + kLanes));
+    worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
+    for (std::size_t p = 0; p < points; ++p) {
+      Sums& sums = sums_[which[begin + p]];
+      for (std::size_t i = p * count; i < (p + 1) * count; ++i) {
+        if (!(term_[i] > 0)) continue;
+        ++sums.asked;
+        if (!(weights_[i] > 0.5f)) continue;
+        ++sums.seen;
+        sums.visible += term_[i];
+        if (!ratio) sums.irradiance += term_[i] * load(light_.radiance, i);
+      }
+    }
+  }
+}
+
+}  // namespace sightline

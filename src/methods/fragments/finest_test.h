@@ -1,0 +1,61 @@
+// The finest level: pixels that trace their own stratified rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "methods/eye_footprint.h"
+#include "methods/fragments/area_light.h"
+#include "methods/fragments/g_buffer.h"
+#include "methods/method.h"
+#include "shade/light_table.h"
+
+namespace sightline {
+
+struct FinestOptions {
+  std::uint32_t rays = 64;
+  bool early_out = true;  ///< a quarter of the rays first; done if all of them agree
+};
+
+/// Buffers of one thread.
+class FinestTest {
+ public:
+  FinestTest(const World& world, const View& view, Visibility& visibility, const FinestOptions& options, std::uint64_t seed);
+
+  void begin(std::uint32_t scope) { worker_->begin(scope); }
+  /// The signal of `light` at the given pixels (elements of the GBuffer) in picture sample `sample`; values[c][i] for channel c: the
+  /// visible share for one channel, irradiance / pi for three.
+  void test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, int channels,
+            std::array<std::vector<float>, 3>& values, PassStatistics& statistics);
+
+ private:
+  /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
+  void trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which,
+             std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
+
+  struct Sums {
+    float visible = 0, all = 0;
+    Color irradiance{0};
+    std::uint32_t asked = 0, seen = 0;
+  };
+  const World& world_;
+  FinestOptions options_;
+  EyeFootprint footprint_;
+  Vec3 camera_;
+  bool orthographic_, exact_;
+  std::uint64_t seed_;
+  std::unique_ptr<VisibilityWorker> worker_;
+  std::vector<Sums> sums_;
+  std::vector<std::uint32_t> open_;
+  Vec3Batch position_;
+  AlignedVector<std::uint32_t> key_, index_, entry_;
+  AlignedVector<float> u0_, u1_, selection_, term_;
+  LightSampleBatch light_;
+  QueryBatch queries_;
+  AlignedVector<float> weights_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,45 @@
+#include "methods/fragments/method.h"
+
+#include "base/core/error.h"
+#include "methods/fragments/picture.h"
+#include "methods/fragments/settings.h"
+
+namespace sightline {
+
+const MethodInfo& FragmentsMethod::info() const {
+  static const MethodInfo info = [] {
+    MethodInfo i;
+    i.name = "fragments";
+    i.help = "direct light of area lights: shadow rays for squares of pixels, fine ones only where the shadow needs them";
+    i.citation = "Koa2017";
+    i.progressive = i.deterministic = true;
+    i.lights = {LightKind::rectangle, LightKind::disk, LightKind::mesh};
+    i.materials = all_material_kinds();
+    return i;
+  }();
+  return info;
+}
+
+SettingsValue FragmentsMethod::default_settings() const { return SettingsValue::of<FragmentsSettings>(); }
+
+void FragmentsMethod::check(const Scene&, const RenderJob& job) const {
+  if (job.visibility && !job.visibility->binary())
+    throw usage_error("method fragments compares which rays arrive: it needs answers of yes or no")
+        .remedy("use --visibility exact or cached");
+}
+
+void FragmentsMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
+                                  const Context& context) const {
+  FragmentPicture picture(job, *job.view, job.settings.as<FragmentsSettings>(), context);
+  for (std::uint32_t sample = range.begin; sample < range.end; ++sample) {
+    // Whole pictures: tiles are done together.
+    bool missing = false;
+    for (std::size_t tile = 0; tile < frame.tile_count(); ++tile) missing |= frame.first_sample() + frame.samples_done(tile) <= sample;
+    if (!missing) continue;
+    job.visibility->begin_pass({sample, 0}, context);
+    picture.render(sample, frame, statistics);
+    context.report("render", static_cast<double>(sample + 1 - range.begin), static_cast<double>(range.count()));
+  }
+}
+
+}  // namespace sightline

@@ -1,0 +1,29 @@
+// The settings resolved: what a variant stands for, in the terms of the stages.
+#pragma once
+
+#include "methods/fragments/finest_test.h"
+#include "methods/fragments/fragment.h"
+#include "methods/fragments/pyramid.h"
+#include "methods/fragments/settings.h"
+#include "methods/fragments/upsample.h"
+
+namespace sightline {
+
+struct FragmentOptions {
+  enum class Refine { probes, neighbours, all } refine = Refine::probes;
+  GeometryOptions geometry;
+  SplitOptions split;
+  FinestOptions finest;
+  UpsampleOptions upsample;
+  bool ratio = true;  ///< interpolate the visible share; else irradiance
+  bool interpolate_probes = true;
+  bool smooth = true;
+  bool dark_culling = true;
+  bool extra_samples = true;
+  int confirm = 1;  ///< probes that confirm a stable fragment of level 4 or more
+  int nichols_threshold = 6;
+};
+
+FragmentOptions resolve(const FragmentsSettings& settings);
+
+}  // namespace sightline

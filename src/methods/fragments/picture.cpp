@@ -1,0 +1,170 @@
+#include "methods/fragments/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <mutex>
+
+#include "base/math/vec3_batch.h"
+#include "base/parallel/parallel.h"
+#include "methods/fragments/upsample.h"
+
+namespace sightline {
+namespace {
+
+// More lights than this are folded into groups.
+constexpr std::size_t kLights = 16;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context)
+    : job_(job), view_(view), context_(context), settings_(settings), options_(resolve(settings)) {
+  const World& world = *job.world;
+  if (job.light_samples > 0) options_.finest.rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
+  if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
+  for (const AreaLight& light : lights_)
+    points_.push_back(light_points(world.lights(), light, static_cast<std::uint32_t>(options_.split.rays), context.seed));
+  g_.resize(view.width(), view.height());
+  radiance_.resize(g_.kind.size());
+  fragments_.resize(g_.root_count());
+  const auto threads = static_cast<std::size_t>(context.thread_count());
+  cameras_.resize(threads), refiners_.resize(threads), pyramids_.resize(threads), composers_.resize(threads);
+}
+
+// Runs body(root tile, thread, statistics) over all root tiles, and adds up what they counted and how long they took.
+template <class Body>
+void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, Body body) {
+  std::mutex mutex;
+  parallel_for(context_, g_.root_count(), 1, [&](std::size_t begin, std::size_t end) {
+    const auto start = std::chrono::steady_clock::now();
+    PassStatistics local;
+    for (std::size_t root = begin; root < end; ++root) body(root, static_cast<std::size_t>(worker_index()) % cameras_.size(), local);
+    local.stage_seconds[stage] += seconds_since(start);
+    const std::lock_guard lock(mutex);
+    statistics += local;
+  });
+}
+
+void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics& statistics) {
+  const bool all = options_.refine == FragmentOptions::Refine::all;
+  for_roots("primary rays", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
+    std::unique_ptr<CameraPass>& camera = cameras_[thread];
+    if (!camera)
+      camera =
+          std::make_unique<CameraPass>(*job_.world, view_, context_.seed, static_cast<int>(options_.finest.rays), all, job_.visibility);
+    camera->render(root, sample, g_, radiance_, local);
+  });
+  if (!lights_.empty()) {
+    for_roots("geometry", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
+      fragments_[root].clear();
+      pyramids_[thread].build(g_, g_.root(root), options_.geometry);
+      pyramids_[thread].refine(g_, g_.root(root), options_.geometry, fragments_[root]);
+    });
+  }
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    for (std::unique_ptr<Refiner>& r : refiners_) {
+      if (!r) r = std::make_unique<Refiner>(*job_.world, view_, *job_.visibility, options_, context_.seed);
+      r->set_light(lights_[l], points_[l]);
+    }
+    render_light(lights_[l], sample, statistics);
+  }
+  write(sample, frame, statistics);
+}
+
+void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics) {
+  signal_.resize(g_, options_.ratio && light.analytic ? 1 : 3);
+  for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
+    Refiner& refiner = *refiners_[thread];
+    const RefinementCounts before = refiner.counts();
+    refiner.refine(g_, root, fragments_[root], sample, signal_, local);
+    const RefinementCounts& after = refiner.counts();
+    const auto count = [&](const char* name, std::uint64_t RefinementCounts::* member) {
+      local.method_statistics[name] += static_cast<double>(after.*member - before.*member);
+    };
+    count("fragments", &RefinementCounts::fragments), count("level0_fragments", &RefinementCounts::finest);
+    count("test_rays", &RefinementCounts::test_rays), count("confirmation_rays", &RefinementCounts::confirm_rays);
+    count("level0_rays", &RefinementCounts::finest_rays), count("extra_rays", &RefinementCounts::extra_rays);
+    count("extra_samples", &RefinementCounts::extra_samples);
+  });
+  upsample_light(light, statistics);
+}
+
+void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& statistics) {
+  const auto channels = static_cast<std::size_t>(signal_.channels);
+  for (std::size_t c = 0; c < channels; ++c) pixels_[c].resize(g_.kind.size());
+  for_roots("upsampling", statistics, [&](std::size_t root, std::size_t, PassStatistics&) {
+    alignas(kCacheLine) thread_local std::array<std::array<float, kRootSize * kRootSize>, 3> buffer;
+    const std::array<float*, 3> out = {buffer[0].data(), buffer[1].data(), buffer[2].data()};
+    const RootTile tile = g_.root(root);
+    upsample(g_, signal_, options_.upsample, tile, std::span<float* const>(out.data(), channels));
+    for (std::size_t c = 0; c < channels; ++c) {
+      for (int y = tile.y0; y < tile.y1; ++y)
+        std::copy_n(out[c] + (y - tile.y0) * kRootSize, tile.x1 - tile.x0, pixels_[c].data() + g_.at(tile.x0, y));
+    }
+  });
+  for_roots("shading", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
+    const std::array<const float*, 3> signal = {pixels_[0].data(), pixels_[1].data(), pixels_[2].data()};
+    composers_[thread].add(g_, g_.root(root), light, std::span<const float* const>(signal.data(), channels), radiance_);
+  });
+}
+
+// Tiles of the frame that have the sample already (after a resume) are left alone.
+void FragmentPicture::write(std::uint32_t sample, Frame& frame, PassStatistics& statistics) {
+  static_assert(kRootSize % Frame::kTileSize == 0);
+  for_roots("film", statistics, [&](std::size_t root, std::size_t, PassStatistics&) {
+    const RootTile area = g_.root(root);
+    const int columns = (g_.width + Frame::kTileSize - 1) / Frame::kTileSize;
+    for (int y = area.y0; y < area.y1; y += Frame::kTileSize) {
+      for (int x = area.x0; x < area.x1; x += Frame::kTileSize) {
+        const auto index = static_cast<std::size_t>(y / Frame::kTileSize * columns + x / Frame::kTileSize);
+        if (frame.first_sample() + frame.samples_done(index) > sample) continue;
+        write_tile(frame.tile(index), sample, frame);
+        frame.set_samples_done(index, sample + 1 - frame.first_sample());
+      }
+    }
+  });
+}
+
+void FragmentPicture::write_tile(const Tile& tile, std::uint32_t sample, Frame& frame) const {
+  using Show = FragmentsSettings::Show;
+  const bool layers = frame.aovs().bits() != AovSet().bits();
+  alignas(kCacheLine) std::array<std::uint32_t, kLanes> pixel;
+  std::array<std::uint8_t, kLanes> inside;
+  alignas(kCacheLine) std::array<float, kLanes> map;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(kLanes)) {
+      const std::size_t at = g_.at(x, y);
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const int px = x + static_cast<int>(i);
+        inside[i] = px < tile.x1;
+        pixel[i] = static_cast<std::uint32_t>(y * g_.width + std::min(px, tile.x1 - 1));
+        if (layers && inside[i]) write_layers(at + i, pixel[i], frame);
+      }
+      PixelBlock block{pixel.data(), inside.data(), sample, 1, {radiance_.x.data() + at, radiance_.y.data() + at, radiance_.z.data() + at}};
+      if (settings_.show != Show::picture && !lights_.empty()) {
+        for (std::size_t i = 0; i < kLanes; ++i)
+          map[i] = settings_.show == Show::levels ? static_cast<float>(signal_.level[at + i]) / kRootLevel : pixels_[0][at + i];
+        block.channel = {map.data(), map.data(), map.data()};
+      }
+      frame.add(Aov::direct, block);
+      frame.add_color(block);
+    }
+  }
+}
+
+void FragmentPicture::write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const {
+  if (g_.kind[at] == PixelKind::background) return;
+  const int x = static_cast<int>(pixel) % g_.width, y = static_cast<int>(pixel) / g_.width;
+  frame.add(Aov::albedo, pixel, g_.kind[at] == PixelKind::analytic ? g_.glossy_at(x, y).bsdf.albedo() : load(g_.albedo, at));
+  frame.add(Aov::normal, pixel, (g_.back[at] ? -1.f : 1.f) * load(g_.shading_normal, at));
+  frame.add(Aov::position, pixel, load(g_.position, at));
+  frame.add(Aov::depth, pixel, Vec3(g_.depth[at]));
+  frame.add(Aov::surface, pixel, g_.kind[at] == PixelKind::emitter ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+  frame.add(Aov::alpha, pixel, Vec3(1));
+}
+
+}  // namespace sightline

@@ -1,0 +1,60 @@
+// One sample of a picture: camera pass, refinement light by light, upsampling, and what they leave to the frame.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/core/context.h"
+#include "film/frame.h"
+#include "methods/fragments/area_light.h"
+#include "methods/fragments/camera_pass.h"
+#include "methods/fragments/compose.h"
+#include "methods/fragments/g_buffer.h"
+#include "methods/fragments/light_signal.h"
+#include "methods/fragments/options.h"
+#include "methods/fragments/refiner.h"
+#include "methods/method.h"
+
+namespace sightline {
+
+/// Buffers of a whole picture, for one sample after the other.
+class FragmentPicture {
+ public:
+  FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context);
+
+  /// Adds picture sample `sample` to the frame.
+  void render(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
+
+ private:
+  template <class Body>
+  void for_roots(const char* stage, PassStatistics& statistics, Body body);
+  void render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics);
+  void upsample_light(const AreaLight& light, PassStatistics& statistics);
+  void write(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
+  void write_tile(const Tile& tile, std::uint32_t sample, Frame& frame) const;
+  void write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const;
+
+  const RenderJob& job_;
+  const View& view_;
+  const Context& context_;
+  FragmentsSettings settings_;
+  FragmentOptions options_;
+  std::vector<AreaLight> lights_;
+  std::vector<LightPoints> points_;
+
+  GBuffer g_;
+  Vec3Batch radiance_, map_;
+  LightSignal signal_;
+  std::array<AlignedVector<float>, 3> pixels_;
+  AlignedVector<float> smoothed_;
+  std::vector<std::vector<Fragment>> fragments_;  ///< by root tile: what geometry left
+
+  // By thread.
+  std::vector<std::unique_ptr<CameraPass>> cameras_;
+  std::vector<std::unique_ptr<Refiner>> refiners_;
+  std::vector<DiscontinuityPyramid> pyramids_;
+  std::vector<Composer> composers_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,59 @@
+// Visibility tests inside fragments: four quadrants ask the same points of a light.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "methods/eye_footprint.h"
+#include "methods/fragments/area_light.h"
+#include "methods/fragments/fragment.h"
+#include "methods/fragments/g_buffer.h"
+#include "methods/method.h"
+
+namespace sightline {
+
+/// From this level on each quadrant has four probes, which share out the light's points [Koa2017].
+inline constexpr int kManyProbesLevel = 5;
+
+/// Pixel of the probe of quadrant `q`, or of the `sub`-th of its four from kManyProbesLevel on; moved into the picture.
+IVec2 probe_pixel(const GBuffer& g, const Fragment& f, int q, int sub = -1);
+/// Which of a quadrant's four probes asks point k: one point of every 2 x 2 block of strata each.
+constexpr int sub_probe_of(std::uint32_t k, std::uint32_t count) {
+  const std::uint32_t columns = count == 16 ? 4 : 8;
+  return static_cast<int>((k % columns & 1) + 2 * (k / columns & 1));
+}
+
+/// Buffers of one thread.
+class ProbeTest {
+ public:
+  ProbeTest(const World& world, const View& view, Visibility& visibility, std::uint64_t seed);
+
+  void begin(std::uint32_t scope) { worker_->begin(scope); }
+  /// The light that is asked from now on. `points` must live as long as it is.
+  void set_light(const AreaLight& light, const LightPoints& points);
+  /// masks[i] of fragments[i], which have level >= 1.
+  void test(const GBuffer& g, std::span<const Fragment> fragments, std::vector<ProbeMasks>& masks, PassStatistics& statistics);
+  /// One more probe each at a random pixel of the fragment, which asks the same points as its quadrants did.
+  void confirm(const GBuffer& g, std::span<const Fragment> fragments, std::uint32_t round, std::vector<std::uint64_t>& masks,
+               PassStatistics& statistics);
+  /// The set of light points that a fragment uses.
+  std::uint32_t set_of(const Fragment& f) const;
+
+ private:
+  void add_eye(const GBuffer& g, IVec2 pixel);
+  void ask(PassStatistics& statistics);
+
+  EyeFootprint footprint_;
+  Vec3 camera_;
+  bool orthographic_;
+  bool exact_;
+  std::uint64_t seed_;
+  std::unique_ptr<VisibilityWorker> worker_;
+  const LightPoints* points_ = nullptr;
+  QueryBatch queries_;
+  AlignedVector<float> weights_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,238 @@
+#include "methods/fragments/refiner.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "methods/fragments/unshadowed.h"
+
+namespace sightline {
+namespace {
+
+constexpr int kConfirmLevel = 4;
+constexpr int kExtraLevel = 3;
+
+struct Pixels {
+  int x0, y0, x1, y1;
+};
+Pixels clipped(const GBuffer& g, const Fragment& f) {
+  return {f.x, f.y, std::min(f.x + f.width(), g.width), std::min(f.y + f.width(), g.height)};
+}
+
+}  // namespace
+
+Refiner::Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed)
+    : options_(options), probes_(world, view, visibility, seed), finest_test_(world, view, visibility, options.finest, seed) {}
+
+void Refiner::set_light(const AreaLight& light, const LightPoints& points) {
+  light_ = &light, points_ = &points;
+  probes_.set_light(light, points);
+}
+
+void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
+                     PassStatistics& statistics) {
+  probes_.begin(static_cast<std::uint32_t>(index));
+  finest_test_.begin(static_cast<std::uint32_t>(index));
+  const RootTile tile = g.root(index);
+  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) {
+    std::fill_n(signal.level.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{0});
+    std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});
+    for (int c = 0; c < signal.channels; ++c)
+      std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
+  }
+  finest_.clear(), extras_.clear();
+  children_.assign(fragments.begin(), fragments.end());
+  while (!children_.empty()) {
+    // What the light cannot reach is done; pixels wait for the end.
+    current_.clear();
+    for (const Fragment& f : children_) {
+      if (f.x >= g.width || f.y >= g.height) continue;
+      if (out_of_reach(g, f)) {
+        write_level(g, f, LightSignal::kUnlit, signal), write_constant(g, f, 0, signal);
+        ++counts_.fragments;
+      } else if (f.level == 0) {
+        finest_.push_back(static_cast<std::uint32_t>(g.at(f.x, f.y)));
+      } else {
+        current_.push_back(f);
+      }
+    }
+    children_.clear();
+    const std::uint64_t before = statistics.rays.occlusion;
+    probes_.test(g, current_, masks_, statistics);
+    counts_.test_rays += statistics.rays.occlusion - before;
+    stable_.clear(), stable_masks_.clear();
+    classify(g, signal);
+    confirm(g, signal, statistics);
+  }
+  write_pixels(g, sample, signal, statistics);
+  if (options_.extra_samples) add_extras(g, sample, signal, statistics);
+}
+
+void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
+
+void Refiner::classify(const GBuffer&, LightSignal&) {
+  for (std::size_t i = 0; i < current_.size(); ++i) {
+    const bool dark = options_.dark_culling && most_visible(masks_[i]) == 0;
+    if (dark || is_stable(current_[i].level, masks_[i], options_.split))
+      stable_.push_back(current_[i]), stable_masks_.push_back(masks_[i]);
+    else
+      split(current_[i], masks_[i]);
+  }
+}
+
+// Stable fragments are written, large ones once more probes at random places agree: what lies between the four would be missed.
+void Refiner::confirm(const GBuffer& g, LightSignal& signal, PassStatistics& statistics) {
+  for (int round = 0; round < options_.confirm; ++round) {
+    unconfirmed_.clear();
+    for (const Fragment& f : stable_) {
+      if (f.level >= kConfirmLevel) unconfirmed_.push_back(f);
+    }
+    const std::uint64_t before = statistics.rays.occlusion;
+    probes_.confirm(g, unconfirmed_, static_cast<std::uint32_t>(round), confirmed_, statistics);
+    counts_.confirm_rays += statistics.rays.occlusion - before;
+    std::size_t kept = 0, next = 0;
+    for (std::size_t i = 0; i < stable_.size(); ++i) {
+      const ProbeMasks& m = stable_masks_[i];
+      if (stable_[i].level >= kConfirmLevel) {
+        const std::uint64_t mask = confirmed_[next++];
+        const std::uint64_t missed = (mask & ~(m[0] | m[1] | m[2] | m[3])) | (~mask & (m[0] & m[1] & m[2] & m[3]));
+        if (std::popcount(missed) >= threshold(stable_[i].level, options_.split)) {
+          split(stable_[i], m);
+          continue;
+        }
+      }
+      stable_[kept] = stable_[i], stable_masks_[kept] = m, ++kept;
+    }
+    stable_.resize(kept), stable_masks_.resize(kept);
+  }
+  for (std::size_t i = 0; i < stable_.size(); ++i) {
+    const Fragment& f = stable_[i];
+    ++counts_.fragments;
+    write_level(g, f, 0, signal);
+    if (most_visible(stable_masks_[i]) == 0)
+      write_constant(g, f, 0, signal);
+    else
+      write_stable(g, f, stable_masks_[i], signal);
+    if (options_.extra_samples && f.level >= kExtraLevel) {
+      const int half = f.width() / 2;
+      for (const IVec2 p : {IVec2(f.x, f.y), IVec2(f.x + half, f.y), IVec2(f.x, f.y + half)}) {
+        if (g.inside(p.x, p.y)) extras_.push_back(static_cast<std::uint32_t>(g.at(p.x, p.y)));
+      }
+    }
+  }
+}
+
+bool Refiner::out_of_reach(const GBuffer& g, const Fragment& f) const {
+  const auto reached_from = [&](int x, int y) {
+    const std::size_t at = g.at(std::min(x, g.width - 1), std::min(y, g.height - 1));
+    const Vec3 position = load(g.position, at);
+    return !light_->out_of_reach(position, load(g.shading_normal, at)) && !light_->out_of_reach(position, load(g.geometric_normal, at));
+  };
+  const int w = f.width();
+  if (reached_from(f.x + w / 2, f.y + w / 2)) return false;
+  // Large fragments: at the corners too.
+  return f.level == 0 || !(reached_from(f.x, f.y) || reached_from(f.x + w - 1, f.y) || reached_from(f.x, f.y + w - 1) ||
+                           reached_from(f.x + w - 1, f.y + w - 1));
+}
+
+void Refiner::write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const {
+  const Pixels p = clipped(g, f);
+  for (int y = p.y0; y < p.y1; ++y) {
+    std::fill_n(signal.level.data() + g.at(p.x0, y), p.x1 - p.x0, f.level);
+    std::fill_n(signal.flags.data() + g.at(p.x0, y), p.x1 - p.x0, flags);
+  }
+}
+
+void Refiner::write_constant(const GBuffer& g, const Fragment& f, float value, LightSignal& signal) const {
+  const int half = f.width() / 2;
+  for (int q = 0; q < (f.level == 0 ? 1 : 4); ++q) {
+    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
+    for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = value;
+  }
+}
+
+// The visible share of the light at a receiver, by the points of a set; 1 where no point sends anything.
+float Refiner::share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const {
+  float all = 0, visible = 0;
+  for (std::uint32_t k = 0; k < points_->count; ++k) {
+    const std::size_t i = static_cast<std::size_t>(set) * points_->count + k;
+    const float term = reflected_term(receiver, load(points_->point, i), load(points_->normal, i), points_->two_sided[i] > 0) *
+                       points_->area[i] * luminance(load(points_->radiance, i));
+    all += term;
+    if (mask >> k & 1) visible += term;
+  }
+  return all > 0 ? visible / all : mask != 0 ? 1.f : 0.f;
+}
+
+// Irradiance / pi, each point weighted by the share of the quadrants that see it [Koa2017, Eq. 3, with the visibility and 1 / K that print
+// lost].
+Color Refiner::irradiance(const Receiver& receiver, std::uint32_t set, const ProbeMasks& masks, int quadrants) const {
+  Color sum(0);
+  for (std::uint32_t k = 0; k < points_->count; ++k) {
+    int seen = 0;
+    for (int q = 0; q < quadrants; ++q) seen += static_cast<int>(masks[static_cast<std::size_t>(q)] >> k & 1);
+    if (seen == 0) continue;
+    const std::size_t i = static_cast<std::size_t>(set) * points_->count + k;
+    const float term = geometry_term(receiver, load(points_->point, i), load(points_->normal, i), points_->two_sided[i] > 0);
+    sum += load(points_->radiance, i) * (term * points_->area[i] * static_cast<float>(seen) / static_cast<float>(quadrants));
+  }
+  return sum;
+}
+
+void Refiner::write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const {
+  const int half = f.width() / 2;
+  const std::uint32_t set = probes_.set_of(f);
+  const std::uint64_t full = points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1;
+  // Averaged probes: one value at the centre. (Pixels of the smallest fragments have their own.)
+  const bool average = !options_.interpolate_probes && f.level > 2;
+  std::array<float, 3> mean{};
+  if (average) {
+    const Receiver centre = receiver_at(g, std::min(f.x + half, g.width - 1), std::min(f.y + half, g.height - 1));
+    if (signal.channels == 1) {
+      for (int q = 0; q < 4; ++q) mean[0] += share(centre, set, masks[static_cast<std::size_t>(q)]) / 4;
+    } else {
+      const Color sum = irradiance(centre, set, masks, 4);
+      mean = {sum.x, sum.y, sum.z};
+    }
+  }
+  for (int q = 0; q < 4; ++q) {
+    const std::uint64_t mask = masks[static_cast<std::size_t>(q)];
+    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
+    const auto receiver = [&] {
+      const IVec2 pixel = probe_pixel(g, f, q);
+      return receiver_at(g, pixel.x, pixel.y);
+    };
+    if (average) {
+      for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = mean[static_cast<std::size_t>(c)];
+    } else if (signal.channels == 1) {
+      signal.value[0][at] = mask == 0 ? 0.f : mask == full ? 1.f : share(receiver(), set, mask);
+    } else {
+      const Color sum = mask == 0 ? Color(0) : irradiance(receiver(), set, {mask, 0, 0, 0}, 1);
+      for (int c = 0; c < 3; ++c) signal.value[static_cast<std::size_t>(c)][at] = sum[c];
+    }
+  }
+}
+
+void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
+  const std::uint64_t before = statistics.rays.occlusion;
+  finest_test_.test(g, *light_, finest_, sample, signal.channels, values_, statistics);
+  counts_.finest_rays += statistics.rays.occlusion - before;
+  counts_.finest += finest_.size(), counts_.fragments += finest_.size();
+  for (std::size_t i = 0; i < finest_.size(); ++i) {
+    signal.level[finest_[i]] = 0, signal.flags[finest_[i]] = 0;
+    for (int c = 0; c < signal.channels; ++c)
+      signal.value[static_cast<std::size_t>(c)][finest_[i]] = values_[static_cast<std::size_t>(c)][i];
+  }
+}
+
+void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
+  const std::uint64_t before = statistics.rays.occlusion;
+  finest_test_.test(g, *light_, extras_, sample, signal.channels, values_, statistics);
+  counts_.extra_rays += statistics.rays.occlusion - before, counts_.extra_samples += extras_.size();
+  for (std::size_t i = 0; i < extras_.size(); ++i) {
+    signal.flags[extras_[i]] = static_cast<std::uint8_t>(signal.flags[extras_[i]] | LightSignal::kExtra);
+    for (int c = 0; c < signal.channels; ++c)
+      signal.extra[static_cast<std::size_t>(c)][extras_[i]] = values_[static_cast<std::size_t>(c)][i];
+  }
+}
+
+}  // namespace sightline

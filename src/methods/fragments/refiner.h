@@ -1,0 +1,70 @@
+// Waves of fragments over one root tile and one light: test, classify, split, until every fragment is stable or a pixel.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "methods/fragments/area_light.h"
+#include "methods/fragments/finest_test.h"
+#include "methods/fragments/fragment.h"
+#include "methods/fragments/g_buffer.h"
+#include "methods/fragments/light_signal.h"
+#include "methods/fragments/options.h"
+#include "methods/fragments/probe_test.h"
+#include "methods/fragments/unshadowed.h"
+
+namespace sightline {
+
+/// Fragments and rays by what they were for, in the paper's terms.
+struct RefinementCounts {
+  std::uint64_t fragments = 0;  ///< stable ones and pixels
+  std::uint64_t finest = 0;     ///< of those, pixels of level 0
+  std::uint64_t test_rays = 0, confirm_rays = 0, finest_rays = 0, extra_rays = 0, extra_samples = 0;
+};
+
+/// Buffers of one thread.
+class Refiner {
+ public:
+  Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed);
+
+  void set_light(const AreaLight& light, const LightPoints& points);
+  /// Refines `fragments` (those that geometry left) of root tile `index`, and writes the tile's part of `signal`.
+  void refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
+              PassStatistics& statistics);
+  const RefinementCounts& counts() const { return counts_; }
+
+  /// The stages below are public for those who refine by other rules: signals of stable fragments from their masks, of pixels, and of none.
+  bool out_of_reach(const GBuffer& g, const Fragment& f) const;
+  void write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const;
+  void write_constant(const GBuffer& g, const Fragment& f, float value, LightSignal& signal) const;
+  void write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const;
+  void write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
+  ProbeTest& probes() { return probes_; }
+  std::vector<std::uint32_t>& finest() { return finest_; }
+  RefinementCounts& counts() { return counts_; }
+
+ private:
+  void classify(const GBuffer& g, LightSignal& signal);
+  void confirm(const GBuffer& g, LightSignal& signal, PassStatistics& statistics);
+  void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
+  void split(const Fragment& f, const ProbeMasks& masks);
+  float share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const;
+  Color irradiance(const Receiver& receiver, std::uint32_t set, const ProbeMasks& masks, int quadrants) const;
+
+  FragmentOptions options_;
+  ProbeTest probes_;
+  FinestTest finest_test_;
+  const AreaLight* light_ = nullptr;
+  const LightPoints* points_ = nullptr;
+
+  std::vector<Fragment> current_, children_, stable_, unconfirmed_;
+  std::vector<ProbeMasks> masks_, stable_masks_;
+  std::vector<std::uint64_t> confirmed_;
+  std::vector<std::uint32_t> finest_, extras_;
+  std::array<std::vector<float>, 3> values_;
+  RefinementCounts counts_;
+};
+
+}  // namespace sightline
