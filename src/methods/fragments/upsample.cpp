@@ -43,11 +43,14 @@ class TileUpsampler {
 
   // A block of fragments of up to 4 x 4 pixels.
   void small_fragments(int x0, int y0) const {
+    // Quadrants of fragments of 2 x 2 are pixels.
+    const int copied =
+        std::max(options_.copy_levels, options_.interpolate_probes && options_.kind != UpsampleOptions::Kind::multipass ? 1 : 0);
     const int x1 = std::min(x0 + kBlock, tile_.x1), y1 = std::min(y0 + kBlock, tile_.y1);
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
         const int level = signal_.level[g_.at(x, y)];
-        if (level <= options_.copy_levels || level == 0) {
+        if (level <= copied) {
           const int mask = level == 2 ? 1 : 0;
           const std::size_t from = g_.at(x & ~mask, y & ~mask), to = static_cast<std::size_t>((y - tile_.y0) * kRootSize + x - tile_.x0);
           for (std::size_t c = 0; c < channels(); ++c) out_[c][to] = signal_.value[c][from];
