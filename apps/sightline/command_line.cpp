@@ -167,7 +167,8 @@ void add_render_output(CLI::App& app, RenderCommand& r) {
       ->allow_extra_args(false)
       ->required()
       ->group(group);
-  app.add_option("--aov", r.aovs, "layers for EXR: albedo,normal,position,depth,surface,direct,indirect,variance or all")
+  app.add_option("--aov", r.aovs,
+                 "layers for EXR: albedo,normal,position,depth,surface,direct,indirect,variance,alpha (also for PNG) or all")
       ->type_name("LIST")
       ->group(group);
   app.add_option("--exposure", r.exposure_ev, "stops, for 8-bit outputs")->type_name("EV")->group(group);

@@ -22,11 +22,17 @@ std::span<const AovInfo> aov_table() {
       {Aov::direct, "direct", "radiance by emission and direct light", {"R", "G", "B"}, true},
       {Aov::indirect, "indirect", "radiance by one or more indirect bounces", {"R", "G", "B"}, true},
       {Aov::variance, "variance", "mean of the squared luminance of samples (V); the error estimate comes from it", {"V"}, false},
+      {Aov::alpha, "alpha", "coverage: share of samples that hit a surface, not the background", {"A"}, false},
   };
   return table;
 }
 
 const AovInfo& aov_info(Aov aov) { return aov_table()[static_cast<std::size_t>(aov)]; }
+
+std::string channel_name(const AovInfo& info, std::string_view channel) {
+  if (info.id == Aov::color || info.id == Aov::alpha) return std::string(channel);
+  return fmt::format("{}.{}", info.name, channel);
+}
 
 AovSet parse_aovs(std::string_view list) {
   AovSet set;

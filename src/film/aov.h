@@ -1,6 +1,7 @@
 // The layers a frame may hold, declared in one table.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,16 +11,21 @@
 namespace sightline {
 
 /// Arbitrary output variables. kColor is always there.
-enum class Aov : std::uint8_t { color, albedo, normal, position, depth, surface, direct, indirect, variance };
-inline constexpr std::size_t kAovCount = 9;
+enum class Aov : std::uint8_t { color, albedo, normal, position, depth, surface, direct, indirect, variance, alpha };
+inline constexpr std::size_t kAovCount = 10;
+/// Layers that a Frame's light image has.
+inline constexpr std::array<Aov, 3> kLightImageLayers{Aov::color, Aov::direct, Aov::indirect};
 
 struct AovInfo {
   Aov id;
   std::string_view name;
   std::string_view help;
-  std::vector<std::string_view> channels;  ///< channel names in EXR; colour has no prefix
+  std::vector<std::string_view> channels;  ///< letters of the channels; channel_name() has the whole names
   bool half;                               ///< half floats suffice in files
 };
+
+/// A channel's name in files: "albedo.G"; those of colour and alpha have no prefix, as every reader expects R, G, B and A.
+std::string channel_name(const AovInfo& info, std::string_view channel);
 
 /// All layers in the order of the enum.
 std::span<const AovInfo> aov_table();

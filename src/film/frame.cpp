@@ -114,7 +114,7 @@ void Frame::add(Aov aov, const PixelBlock& block) {
 }
 
 void Frame::enable_light_image() {
-  for (const Aov aov : {Aov::color, Aov::direct, Aov::indirect}) light_image_[static_cast<std::size_t>(aov)].resize(sums(aov).size());
+  for (const Aov aov : kLightImageLayers) light_image_[static_cast<std::size_t>(aov)].resize(sums(aov).size());
 }
 
 void Frame::splat(std::uint32_t pixel, std::uint32_t sample, const Color& value, bool direct) {
@@ -176,10 +176,8 @@ LayeredImage Frame::to_layered_image() const {
   for (const AovInfo& info : aov_table()) {
     if (!aovs_.has(info.id)) continue;
     const std::size_t first = image.channels.size();
-    for (const std::string_view channel : info.channels) {
-      std::string name = info.id == Aov::color ? std::string(channel) : std::string(info.name) + "." + std::string(channel);
-      image.channels.push_back({std::move(name), info.half, std::vector<float>(pixel_count)});
-    }
+    for (const std::string_view channel : info.channels)
+      image.channels.push_back({channel_name(info, channel), info.half, std::vector<float>(pixel_count)});
     for (std::uint32_t pixel = 0; pixel < pixel_count; ++pixel) {
       const Vec3 v = value(info.id, pixel, mean);
       for (std::size_t c = 0; c < info.channels.size(); ++c) image.channels[first + c].values[pixel] = v[static_cast<int>(c)];

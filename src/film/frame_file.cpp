@@ -104,7 +104,7 @@ StoredFrame decode_frame(std::span<const std::byte> bytes, const std::string& na
   const auto light_image_key = header.find("light_image");
   const bool light_image = light_image_key != header.end() && light_image_key->is_boolean() && light_image_key->get<bool>();
   if (light_image) {
-    for (const Aov aov : {Aov::color, Aov::direct, Aov::indirect}) channels += aovs.has(aov) ? aov_info(aov).channels.size() : 0;
+    for (const Aov aov : kLightImageLayers) channels += aovs.has(aov) ? aov_info(aov).channels.size() : 0;
   }
   const std::uint64_t pixel_bytes = *width * *height * channels * sizeof(ExactSum);
   const std::span<const std::byte> payload = body.subspan(prefix.header_bytes);

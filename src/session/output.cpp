@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/core/error.h"
 #include "image/io/image_io.h"
@@ -35,6 +36,25 @@ Target target_of(const std::string& output) {
   return target;
 }
 
+// PNG's colour is not premultiplied: it is the mean over the covered part alone. Where nothing is covered the background's stays, for
+// viewers that ignore alpha.
+std::vector<std::uint8_t> straight_rgba8(const Frame& frame, const OutputOptions& options) {
+  ColorImage image = frame.color_image();
+  std::vector<float> alpha(image.pixels.size());
+  for (std::uint32_t pixel = 0; pixel < alpha.size(); ++pixel) {
+    alpha[pixel] = frame.value(Aov::alpha, pixel).x;
+    if (alpha[pixel] > 0) image.pixels[pixel] /= alpha[pixel];
+  }
+  const std::vector<std::uint8_t> rgb = to_srgb8(image, options.tone_map, options.exposure_ev);
+  std::vector<std::uint8_t> rgba;
+  rgba.reserve(4 * alpha.size());
+  for (std::size_t pixel = 0; pixel < alpha.size(); ++pixel) {
+    rgba.insert(rgba.end(), {rgb[3 * pixel], rgb[3 * pixel + 1], rgb[3 * pixel + 2]});
+    rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(alpha[pixel], 0.0f, 1.0f))));
+  }
+  return rgba;
+}
+
 }  // namespace
 
 void check_output(const std::string& output) {
@@ -55,6 +75,8 @@ void write_output(const std::string& output, const Frame& frame, const OutputOpt
     bytes = encode_hdr(frame.color_image());
   } else if (target.format == "pfm") {
     bytes = encode_pfm(frame.color_image());
+  } else if (target.format == "png" && frame.aovs().has(Aov::alpha)) {
+    bytes = encode_png(frame.width(), frame.height(), 4, straight_rgba8(frame, options));
   } else {
     const std::vector<std::uint8_t> pixels = to_srgb8(frame.color_image(), options.tone_map, options.exposure_ev);
     bytes =

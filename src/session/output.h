@@ -24,7 +24,8 @@ struct OutputOptions {
 /// Checks path and ending before any work is done: Error{usage} for an unknown ending, Error{resource} where nothing can be written.
 /// "exr:-" (also hdr, pfm, png, jpg, slice) is standard output.
 void check_output(const std::string& output);
-/// Writes .exr (all layers and metadata), .hdr, .pfm, .png, .jpg, or .slice (exact sums, for merge).
+/// Writes .exr (all layers and metadata), .hdr, .pfm, .png, .jpg, or .slice (exact sums, for merge). Alpha, if the frame has that layer, is
+/// channel A of EXR (colour is premultiplied) and of PNG (colour is not).
 void write_output(const std::string& output, const Frame& frame, const OutputOptions& options);
 /// "####" replaced by the frame number with at least as many digits.
 std::string numbered(const std::string& output, int frame_number);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests of the command line as users meet it: files that are written, and those that cannot be."""
+import json
 import os
 import stat
 import subprocess
@@ -40,6 +41,25 @@ class Pictures(ProgramTest):
             self.assertTrue(any(name.startswith(layer + ".") for name in channels), f"{layer}: {channels}")
         self.render("-o", "b.exr")
         self.assertEqual(exr_channels((self.folder / "b.exr").read_bytes())[:3], ["B", "G", "R"])
+
+    def test_alpha_is_coverage(self):
+        # A square that fills half of the view, lit by a white environment.
+        (self.folder / "half.obj").write_text("v -9 -9 0\nv 0 -9 0\nv 0 9 0\nv -9 9 0\nf 1 2 3 4\n")
+        view = ("--eye", "0,0,5", "--target", "0,0,0", "--aov", "alpha", "-q")
+        self.render("-o", "a.exr", "-o", "a.png", "-o", "a.jpg", "-o", "a.slice", *view, scene="half.obj", size="16x4")
+        self.assertEqual(exr_channels((self.folder / "a.exr").read_bytes())[:4], ["A", "B", "G", "R"])
+        alpha = [channel for channel in json.loads(self.ok("info", "--json", "a.exr").out)["channels"] if channel["name"] == "A"][0]
+        self.assertEqual((alpha["minimum"], alpha["maximum"]), (0, 1))
+        self.assertAlmostEqual(alpha["mean"], 0.5, delta=0.05)
+        channels = json.loads(self.ok("info", "--json", "a.png").out)["channels"]
+        self.assertEqual([channel["name"] for channel in channels], ["R", "G", "B", "A"])
+        self.assertAlmostEqual(channels[3]["mean"], 0.5, delta=0.05)
+        # Environment and surface alike stay in the colour, which PNG does not multiply by alpha.
+        self.assertGreater(channels[0]["minimum"], 0.3)
+        self.ok("merge", "a.slice", "-o", "m.png")
+        self.assertEqual((self.folder / "m.png").read_bytes(), (self.folder / "a.png").read_bytes())
+        self.render("-o", "b.png", "--aov", "depth")
+        self.assertEqual(len(json.loads(self.ok("info", "--json", "b.png").out)["channels"]), 3)
 
     def test_standard_output(self):
         self.render("-o", "a.exr", "-o", "a.png", "-o", "a.hdr")

@@ -83,6 +83,18 @@ TEST(Conformance, SamplesAreFinite) {
   });
 }
 
+TEST(Conformance, AlphaIsTheShareOfSamplesThatHitSomething) {
+  for_all([](const Method& method, const Shot& shot) {
+    Exposure exposure = exposure_for(method);
+    exposure.spp = 2, exposure.max_bounces = 0;
+    const Picture picture = expose(shot, exposure);
+    for (std::uint32_t pixel = 0; pixel < kSize.x * kSize.y; ++pixel) {
+      const Vec3 surface = picture.frame.value(Aov::surface, pixel);
+      ASSERT_EQ(picture.frame.value(Aov::alpha, pixel).x, surface.x + surface.y) << "pixel " << pixel;
+    }
+  });
+}
+
 TEST(Conformance, ThreadsDoNotChangeTheBitsOfDeterministicMethods) {
   for_all([](const Method& method, const Shot& shot) {
     if (!method.info().deterministic) return;

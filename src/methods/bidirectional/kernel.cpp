@@ -50,6 +50,7 @@ void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& fra
   for (const Splat& splat : batch.splats) {
     if (!is_wanted(splat.sample)) continue;
     const int count = camera.shares(splat.film, shares.data());
+    frame.add(Aov::alpha, pixel, Vec3(1));
     for (int i = 0; i < count; ++i) {
       const CameraImportance::Share& share = shares[static_cast<std::size_t>(i)];
       frame.splat(share.pixel, splat.sample, share.weight * splat.value, splat.direct);

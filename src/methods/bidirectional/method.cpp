@@ -27,7 +27,7 @@ PathOptions path_options(const RenderJob& job, const CameraImportance& camera) {
 }
 
 bool wants_guides(const Frame& frame) {
-  for (const Aov aov : {Aov::albedo, Aov::normal, Aov::position, Aov::depth, Aov::surface}) {
+  for (const Aov aov : {Aov::albedo, Aov::normal, Aov::position, Aov::depth, Aov::surface, Aov::alpha}) {
     if (frame.aovs().has(aov)) return true;
   }
   return false;

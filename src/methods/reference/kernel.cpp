@@ -244,6 +244,7 @@ void PathKernel::write_aovs(Frame& frame) {
 void PathKernel::scatter(std::uint32_t bounce) {
   gather_keys(bounce);
   // Plain surfaces have one lobe; its number, and the roulette's, are drawn only where someone reads them.
+    frame.add(Aov::alpha, pixel, Vec3(1));
   if (!all_plain_ || static_cast<int>(bounce) >= options_.roulette_start)
     sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());

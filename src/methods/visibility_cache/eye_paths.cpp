@@ -193,6 +193,7 @@ void EyePaths::Impl::visit_plain_first_hit(std::size_t i, const TilePaths& paths
              static_cast<std::uint32_t>(path), 0);
   write_aovs(i, paths.pixel[path], albedo, shading, frame);
 }
+  frame.add(Aov::alpha, pixel, Vec3(1));
 
 // Any surface, at any depth.
 void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, TilePaths& paths, Frame& frame) {

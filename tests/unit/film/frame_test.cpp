@@ -174,5 +174,18 @@ TEST(Aov, UnknownLayerNamesTheNearest) {
   EXPECT_TRUE(parse_aovs("all").has(Aov::depth));
 }
 
+TEST(Aov, ColourAndAlphaAreTheChannelsThatReadersLookFor) {
+  Frame frame(2, 1, parse_aovs("alpha,albedo"));
+  frame.add_color(0, 0, Color(3));
+  frame.add(Aov::alpha, 0, Vec3(1));
+  frame.set_samples_done(0, 2);
+  const LayeredImage image = frame.to_layered_image();
+  for (const char* name : {"R", "G", "B", "A", "albedo.R"}) EXPECT_NE(image.find(name), nullptr) << name;
+  EXPECT_EQ(image.find("A")->values, (std::vector<float>{0.5f, 0}));
+  EXPECT_EQ(image.find("R")->values, (std::vector<float>{1.5f, 0})) << "colour is premultiplied: the mean over covered and empty samples";
+  const LayeredImage plain = Frame(2, 1, {}).to_layered_image();
+  EXPECT_EQ(plain.find("A"), nullptr);
+}
+
 }  // namespace
 }  // namespace sightline

@@ -18,7 +18,7 @@ using namespace test;
 
 std::shared_ptr<const World> build(const Scene& scene) { return World::build(scene, {}, Context()); }
 
-AovSet first_hit_layers() { return parse_aovs("albedo,normal,position,depth,surface"); }
+AovSet first_hit_layers() { return parse_aovs("albedo,normal,position,depth,surface,alpha"); }
 
 // Materials that random numbers choose, smooth normals, a background and a camera with a lens.
 Scene mixed_scene() {
@@ -48,7 +48,7 @@ TEST(EyePaths, FirstHitsAreTheReferences) {
     how.size_px = shot.size_px, how.filter = exposure.filter, how.range = {0, 4}, how.pass_samples = 4, how.options.seed = 7;
     how.aovs = exposure.aovs;
     const Taken taken = take(*shot.world, shot.camera, how);
-    for (const Aov aov : {Aov::albedo, Aov::normal, Aov::position, Aov::depth, Aov::surface})
+    for (const Aov aov : {Aov::albedo, Aov::normal, Aov::position, Aov::depth, Aov::surface, Aov::alpha})
       EXPECT_TRUE(std::ranges::equal(taken.frame.sums(aov), reference.frame.sums(aov))) << static_cast<int>(aov);
   }
 }
