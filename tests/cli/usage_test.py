@@ -106,7 +106,8 @@ class Usage(ProgramTest):
         self.assertNotIn("\033", run.err)
 
     def test_quiet_says_nothing(self):
-        self.assertEqual(self.render("-o", "a.png", "-q").err, "")
+        for threads in (1, 7, 64):
+            self.assertEqual(self.render("-o", "a.png", "-q", threads=threads).err, "")
 
 
 class Names(ProgramTest):

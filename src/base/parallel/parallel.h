@@ -14,6 +14,9 @@ namespace sightline {
 void parallel_for(const Context& context, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// Runs `work` where libraries that share the scheduler (Embree's builder) use context.thread_count() threads for loops of their own.
+void run_in_arena(const Context& context, const std::function<void()>& work);
+
 /// Index of the calling worker in [0, context.thread_count()) inside a parallel_for body, for per-thread scratch; 0 outside.
 int worker_index();
 

@@ -16,7 +16,8 @@ namespace sightline {
 namespace {
 
 // oneTBB starts no more workers than there are cores unless a global_control says so; of several living ones the smallest counts, so
-// there is one, which grows to the largest number ever asked for. The arenas keep each loop to its own number.
+// there is one, which grows to the largest number ever asked for. The arenas keep each loop to its own number. It comes before any arena
+// that wants more: oneTBB prints a warning on stderr otherwise.
 void allow_threads(std::size_t count) {
   static std::mutex mutex;
   static std::unique_ptr<tbb::global_control> control;
@@ -25,6 +26,11 @@ void allow_threads(std::size_t count) {
   if (count <= Control::active_value(Control::max_allowed_parallelism)) return;
   control.reset();
   control = std::make_unique<Control>(Control::max_allowed_parallelism, count);
+}
+
+tbb::task_arena arena_of(int threads) {
+  allow_threads(static_cast<std::size_t>(threads));
+  return tbb::task_arena(threads);
 }
 
 }  // namespace
@@ -44,8 +50,7 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain, 
   }
   // A shared counter hands chunks out in order: neighbouring chunks run at about the same time, which caches like, and long chunks at the
   // start do not wait behind a static split.
-  allow_threads(static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
+  tbb::task_arena arena = arena_of(threads);
   std::atomic<std::size_t> next{0};
   arena.execute([&] {
     tbb::parallel_for(
@@ -63,6 +68,8 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain, 
         tbb::simple_partitioner());
   });
 }
+
+void run_in_arena(const Context& context, const std::function<void()>& work) { arena_of(context.thread_count()).execute(work); }
 
 int worker_index() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
 

@@ -43,6 +43,9 @@ void parallel_for(const Context& context, std::size_t count, std::size_t grain, 
   if (failure) std::rethrow_exception(failure);
 }
 
+// No library shares these threads.
+void run_in_arena(const Context&, const std::function<void()>& work) { work(); }
+
 int worker_index() { return current_worker; }
 
 }  // namespace sightline

@@ -8,13 +8,23 @@
 #include <utility>
 
 #include "base/core/error.h"
-#include "trace/embree/build_arena.h"
 
 namespace sightline {
+namespace {
+
+// Embree's own setting would install a tbb::global_control that throttles the whole process for as long as the device lives; a device made
+// in an arena (run_in_arena) takes the arena's size instead. Where parallel loops do not run on TBB (ThreadSanitizer), one thread builds.
+#if SIGHTLINE_PARALLEL_TBB
+constexpr const char* kThreadSetting = "";
+#else
+constexpr const char* kThreadSetting = ",threads=1";
+#endif
+
+}  // namespace
 
 EmbreeDevice::EmbreeDevice(const std::string& isa) {
   // Without its configuration files Embree behaves the same for every user and folder.
-  std::string settings = std::string("ignore_config_files=1") + embree_thread_setting();
+  std::string settings = std::string("ignore_config_files=1") + kThreadSetting;
   // Embree silently ignores names that it does not know.
   constexpr std::array<std::string_view, 5> kInstructionSets{"sse2", "sse4.2", "avx", "avx2", "avx512"};
   if (!isa.empty() && std::find(kInstructionSets.begin(), kInstructionSets.end(), isa) == kInstructionSets.end()) {

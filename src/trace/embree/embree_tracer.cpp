@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/core/error.h"
+#include "base/parallel/parallel.h"
 #include "trace/alpha_mask.h"
-#include "trace/embree/build_arena.h"
 #include "trace/embree/committed_scene.h"
 #include "trace/embree/packets.h"
 #include "trace/tracer.h"
@@ -29,7 +29,7 @@ class EmbreeTracer final : public Tracer {
                      previous->options_.isa != options.isa)) {
       previous = nullptr;
     }
-    run_in_build_arena(context, [&] { build(scene, context, previous); });
+    run_in_arena(context, [&] { build(scene, context, previous); });
     scenes_.static_scene = static_ ? static_->get() : nullptr;
     scenes_.top_scene = top_ ? top_->get() : nullptr;
     scenes_.masks = &masks_;

@@ -52,6 +52,13 @@ TEST_P(ParallelFor, ChunkBordersAreMultiplesOfTheGrain) {
   }
 }
 
+TEST_P(ParallelFor, AnArenaDoesWhatItIsGiven) {
+  std::atomic<int> visits{0};
+  run_in_arena(context_, [&] { parallel_for(context_, 100, 1, [&](std::size_t, std::size_t) { ++visits; }); });
+  EXPECT_EQ(visits, 100);
+  EXPECT_THROW(run_in_arena(context_, [] { throw std::runtime_error("from within"); }), std::runtime_error);
+}
+
 TEST_P(ParallelFor, ZeroGrainIsOne) {
   std::atomic<int> calls{0};
   parallel_for(context_, 5, 0, [&](std::size_t, std::size_t) { ++calls; });
