@@ -8,6 +8,7 @@
 #include "base/core/error.h"
 #include "commands.h"
 #include "image/io/image_io.h"
+#include "session/memory_needs.h"
 #include "session/options_text.h"
 #include "session/output.h"
 #include "session/statistics.h"
@@ -113,12 +114,13 @@ StopReason render_frame(const Sequence& sequence, int frame_number, const Stopwa
   Scene scene = pose(sequence.loaded, static_cast<float>(frame_number) / command.fps);
   WorldOptions options;
   if (command.tracer == "brute") options.backend = WorldOptions::Backend::brute;
+  const IVec2 size = choose_size(scene, command.view);
+  const RenderRequest request = frame_request(command, frame_number, sequence.one_frame);
+  options.tracer.reserved_bytes = picture_needs(size, request, false, context).total();
   world = world ? World::edit(*world, std::move(scene), context) : World::build(std::move(scene), options, context);
   const double build_seconds = build_watch.seconds();
 
   const Camera camera = choose_camera(world->scene(), command.view);
-  const IVec2 size = choose_size(world->scene(), command.view);
-  const RenderRequest request = frame_request(command, frame_number, sequence.one_frame);
   const Stopwatch render_watch;
   ConsoleSink sink(sequence.console, render_watch);
   RenderResult result = render(world, camera, size, pixel_filter_from_name(command.view.filter), request, context, watch, {&sink});
@@ -157,7 +159,7 @@ void check_command(const RenderCommand& command, const FrameRange& frames, const
   pixel_filter_from_name(command.view.filter);
   RenderRequest request = command.render;
   request.aovs = parse_aovs(command.aovs);
-  if (command.view.size_px) check_frame_memory(choose_size({}, command.view), request, 0, context);
+  if (command.view.size_px) check_memory(picture_needs(choose_size({}, command.view), request, false, context), context);
 
   std::vector<std::string> files = command.outputs;
   for (const std::string& output : command.outputs) check_output(numbered(output, frames.first));

@@ -88,6 +88,8 @@ class Method {
   /// Passes begin at multiples of this many samples, and end at one or with the picture: what shares answers among its samples needs them
   /// in the same groups however a picture is cut into passes.
   virtual std::uint32_t pass_multiple(const RenderJob&) const { return 1; }
+  /// Whether render_pass() will add a light image to the frame, which then takes more memory.
+  virtual bool light_image(const RenderJob&) const { return false; }
   /// Adds samples [range.begin, range.end) of every pixel to the frame, tile by tile; tiles that have them already are skipped. N passes
   /// equal one of N. On cancellation throws Error{interrupted}; complete tiles stay valid.
   virtual void render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,

@@ -22,9 +22,9 @@ std::uint16_t palette_index(std::vector<MaterialId>& palette, MaterialId id) {
 
 }  // namespace
 
-void require_memory(const Context& context, std::uint64_t bytes, std::string_view purpose) {
+void require_memory(const Context& context, std::uint64_t bytes, std::string_view purpose, std::uint64_t reserved_bytes) {
   if (context.memory_budget_bytes == 0) return;
-  const std::uint64_t used = current_resident_bytes();
+  const std::uint64_t used = current_resident_bytes() + reserved_bytes;
   if (bytes <= context.memory_budget_bytes && used <= context.memory_budget_bytes - bytes) return;
   constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
   throw resource_error(fmt::format("{} need {:.2f} GiB beside the {:.2f} GiB in use, and the limit is {:.2f} GiB", purpose,
@@ -33,7 +33,7 @@ void require_memory(const Context& context, std::uint64_t bytes, std::string_vie
       .remedy("raise --memory-limit or use a smaller scene");
 }
 
-Mesh materialize(const Mesh& mesh, const Context& context) {
+Mesh materialize(const Mesh& mesh, const Context& context, std::uint64_t reserved_bytes) {
   if (!mesh.source) return mesh;
   MeshSource& source = *mesh.source;
   const std::uint64_t vertex_count = source.vertex_count(), triangle_count = source.triangle_count();
@@ -42,7 +42,8 @@ Mesh materialize(const Mesh& mesh, const Context& context) {
         fmt::format("mesh '{}' has {} vertices and {} triangles, too many for 32-bit indices", mesh.name, vertex_count, triangle_count))
         .remedy("use a method that reads geometry in chunks");
   }
-  require_memory(context, vertex_count * sizeof(Vec3) + triangle_count * (sizeof(UVec3) + 2), "the arrays of mesh '" + mesh.name + "'");
+  require_memory(context, vertex_count * sizeof(Vec3) + triangle_count * (sizeof(UVec3) + 2), "the arrays of mesh '" + mesh.name + "'",
+                 reserved_bytes);
 
   Mesh result = mesh;
   result.source.reset();

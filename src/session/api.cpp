@@ -3,6 +3,7 @@
 
 #include "methods/method.h"
 #include "scene/load/load.h"
+#include "session/memory_needs.h"
 #include "session/render.h"
 #include "session/setup.h"
 #include "session/statistics.h"
@@ -117,7 +118,10 @@ Picture Renderer::render(const RenderOptions& options) {
     Scene scene = *impl.scene;
     apply_lights(scene, impl.lights, impl.context);
     scene = pose(std::move(scene), options.time_s);
-    impl.world = impl.world ? World::edit(*impl.world, std::move(scene), impl.context) : World::build(std::move(scene), {}, impl.context);
+    WorldOptions world_options;
+    world_options.tracer.reserved_bytes = picture_needs(choose_size(scene, view), request, false, impl.context).total();
+    impl.world =
+        impl.world ? World::edit(*impl.world, std::move(scene), impl.context) : World::build(std::move(scene), world_options, impl.context);
     impl.world_time_s = options.time_s;
     impl.build_seconds = build_watch.seconds();
   }

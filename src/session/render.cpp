@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/core/error.h"
 #include "base/simd/simd_target.h"
 #include "image/io/image_io.h"
+#include "session/memory_needs.h"
 #include "session/pass_watch.h"
 
 namespace sightline {
@@ -32,12 +33,6 @@ Frame resume_frame(const std::filesystem::path& path, const FrameIdentity& ident
   if (stored.frame.first_sample() != samples.begin || stored.frame.aovs().bits() != aovs.bits())
     throw usage_error("the checkpoint has another sample range or other layers").at(path.string());
   return std::move(stored.frame);
-}
-
-AovSet frame_layers(const RenderRequest& request) {
-  AovSet aovs = request.aovs;
-  if (request.target_error) aovs.add(Aov::variance);
-  return aovs;
 }
 
 // What two frames must share to be added up or continued.
@@ -76,6 +71,12 @@ void write_checkpoint(const std::filesystem::path& path, const RenderResult& res
 }  // namespace
 
 std::string simd_target_name() { return simd_target(); }
+AovSet frame_layers(const RenderRequest& request) {
+  AovSet aovs = request.aovs;
+  if (request.target_error) aovs.add(Aov::variance);
+  return aovs;
+}
+
 
 namespace {
 
@@ -115,23 +116,6 @@ ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& vi
   return resolved;
 }
 
-void check_frame_memory(IVec2 size_px, const RenderRequest& request, std::uint64_t other_bytes, const Context& context) {
-  const AovSet aovs = frame_layers(request);
-  std::uint64_t channels = 0;
-  for (const AovInfo& info : aov_table()) channels += aovs.has(info.id) ? info.channels.size() : 0;
-  // While it is written, a picture also exists as floats and once more encoded.
-  const std::uint64_t pixels = static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y);
-  const std::uint64_t needed = other_bytes + pixels * channels * (sizeof(ExactSum) + 2 * sizeof(float));
-  const auto machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-  const std::uint64_t limit = context.memory_budget_bytes ? context.memory_budget_bytes : machine;
-  if (needed <= limit) return;
-  constexpr double gib = 1u << 30;
-  throw resource_error(fmt::format("scene and picture need {:.2f} GiB, {} {:.2f} GiB", static_cast<double>(needed) / gib,
-                                   context.memory_budget_bytes ? "the memory limit is" : "this machine has",
-                                   static_cast<double>(limit) / gib))
-      .remedy(fmt::format("{}render smaller or with fewer layers", context.memory_budget_bytes ? "raise --memory-limit, or " : ""));
-}
-
 /// Samples that share answers must be rendered together: both ends of the range lie between such groups.
 void check_whole_passes(SampleRange samples, std::uint32_t multiple, std::uint32_t spp) {
   if (samples.begin % multiple == 0 && (samples.end % multiple == 0 || samples.end == spp)) return;
@@ -162,6 +146,10 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   const View view(camera, size_px, spp == 1 ? PixelFilter(PixelFilter::Kind::centre) : filter);
   job.view = &view;
   const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
+  // All of it is known to fit before any of it is allocated. The frame comes first: visibilities that take what is free then see it.
+  check_memory(with_world(picture_needs(size_px, request, method.light_image(job), context), *world), context);
+  const AovSet aovs = frame_layers(request);
+  Frame frame(size_px.x, size_px.y, aovs, samples.begin);
   job.visibility = visibility.get();
   method.check(world->scene(), job);
   const std::uint32_t multiple = std::max(1u, method.pass_multiple(job));
@@ -171,9 +159,7 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
         fmt::format("visibility '{}' learns from pass to pass: parts made apart are not the picture made in one go", visibility_info.name))
         .remedy("render without --sample-range and --resume");
 
-  const AovSet aovs = frame_layers(request);
-  check_frame_memory(size_px, request, world->acceleration_bytes() + scene_bytes(world->scene()), context);
-  RenderResult result{Frame(size_px.x, size_px.y, aovs, samples.begin),
+  RenderResult result{std::move(frame),
                       {},
                       StopReason::none,
                       request.method,

@@ -67,9 +67,8 @@ struct ResolvedSettings {
 };
 ResolvedSettings resolve_settings(const Method& method, const VisibilityInfo& visibility, const std::vector<std::string>& assignments);
 
-/// Throws Error{resource} if a frame of that size with the layers that the request leads to does not fit the context's memory budget, or,
-/// without a budget, the machine. `other_bytes` are taken already.
-void check_frame_memory(IVec2 size_px, const RenderRequest& request, std::uint64_t other_bytes, const Context& context);
+/// Layers of the frame that the request leads to.
+AovSet frame_layers(const RenderRequest& request);
 
 /// Name of the SIMD target that Highway kernels run on ("AVX3", ...).
 std::string simd_target_name();

@@ -57,6 +57,8 @@ struct TracerOptions {
   bool compact = false;  ///< less memory, slower
   bool alpha_masks = true;
   std::string isa;  ///< Embree's instruction set: sse2, sse4.2, avx, avx2, avx512; empty = the best there is
+  /// Of the memory budget: what later stages will hold, so that the build leaves it free.
+  std::uint64_t reserved_bytes = 0;
 };
 
 /// Tests every primitive: the truth that other structures are compared with. Keeps a reference to the scene's arrays.

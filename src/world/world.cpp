@@ -26,9 +26,9 @@ void check_indices(const Scene& scene) {
   }
 }
 
-void materialize_all(Scene& scene, const Context& context) {
+void materialize_all(Scene& scene, const WorldOptions& options, const Context& context) {
   for (Mesh& mesh : scene.meshes) {
-    if (mesh.source) mesh = materialize(mesh, context);
+    if (mesh.source) mesh = materialize(mesh, context, options.tracer.reserved_bytes);
   }
 }
 
@@ -45,7 +45,7 @@ World::~World() = default;
 
 std::shared_ptr<const World> World::build(Scene scene, const WorldOptions& options, const Context& context) {
   check_indices(scene);
-  materialize_all(scene, context);
+  materialize_all(scene, options, context);
   auto impl = std::make_unique<Impl>();
   impl->scene = std::move(scene);
   impl->options = options;
@@ -58,8 +58,8 @@ std::shared_ptr<const World> World::build(Scene scene, const WorldOptions& optio
 
 std::shared_ptr<const World> World::edit(const World& previous, Scene scene, const Context& context) {
   check_indices(scene);
-  materialize_all(scene, context);
   const Impl& before = *previous.impl_;
+  materialize_all(scene, before.options, context);
   auto impl = std::make_unique<Impl>();
   impl->scene = std::move(scene);
   impl->options = before.options;

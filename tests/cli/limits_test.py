@@ -105,6 +105,22 @@ class Limits(ProgramTest):
             self.assertLess(usage.ru_maxrss, 400 << 10)
         self.assertEqual(self.files(), [])
 
+    def test_memory_limit_counts_everything_together(self):
+        """Each part alone would fit; the message names them."""
+        scene = "builtin:isosurface,triangles=200000"
+        self.render("-o", "a.png", "--stats", "a.json", "--aov", "all", scene=scene, size="640x480", spp=1)
+        memory = self.json("a.json")["memory"]
+        parts = [memory["scene_bytes"], memory["accel_bytes"], memory["frame_bytes"]]
+        limited = ("--size", "640x480", "--spp", "1", "--aov", "all", "--threads", "1", "-o", "b.png", "--memory-limit")
+        gib = 1 << 30
+        self.fails(4, "render", scene, *limited, 0.98 * (parts[0] + parts[1]) / gib + parts[2] / gib, says="--memory-limit")
+        # The light image, and the tables of a visibility.
+        small = ("builtin:cornell", "--size", "640x480", "--spp", "2", "--threads", "1", "-o", "b.png", "--memory-limit")
+        self.ok("render", *small, 0.032)
+        self.fails(4, "render", *small, 0.032, "--method", "bidirectional", says=("scene", "picture"))
+        self.fails(4, "render", *small, 0.1, "--visibility", "cached", "--set", "shared_table_bits=25", says=("picture", "visibility", "0.10 GiB"))
+        self.ok("render", *small, 0.2, "--visibility", "cached", "--set", "shared_table_bits=25")
+
     def test_a_picture_larger_than_the_machine_is_refused(self):
         self.fails(4, "render", "builtin:cornell", "--size", "46000x46000", "--aov", "all", "-o", "a.exr", says="GiB")
 

@@ -234,6 +234,8 @@ std::uint32_t BidirectionalMethod::pass_multiple(const RenderJob& job) const {
 
 void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                       const Context& context) const {
+bool BidirectionalMethod::light_image(const RenderJob& job) const { return path_options(job, CameraImportance(*job.view)).light_image; }
+
   const Pass pass(job, context);
   if (pass.options.light_image) frame.enable_light_image();
   if (job.visibility->exact()) {

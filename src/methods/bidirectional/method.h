@@ -11,6 +11,7 @@ class BidirectionalMethod final : public Method {
   SettingsValue default_settings() const override;
   std::unique_ptr<const Bake> prepare(const RenderJob& job, const Context& context) const override;
   std::uint32_t pass_multiple(const RenderJob& job) const override;
+  bool light_image(const RenderJob& job) const override;
   void render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                    const Context& context) const override;
 };

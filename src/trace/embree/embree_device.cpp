@@ -67,14 +67,28 @@ void EmbreeDevice::on_error(void* self, RTCError code, const char* text) {
   device.error_text_ = text ? text : "";
 }
 
-EmbreeDevice::Build::Build(EmbreeDevice& device, const Context& context) : device_(device), context_(context), lock_(device.build_mutex_) {
+EmbreeDevice::Build::Build(EmbreeDevice& device, const Context& context, std::uint64_t other_bytes)
+    : device_(device), context_(context), other_bytes_(other_bytes), lock_(device.build_mutex_) {
   device_.peak_bytes_.store(device_.bytes());
-  device_.budget_bytes_.store(static_cast<std::int64_t>(context.memory_budget_bytes));
+  // A budget of 0 would be none; nothing that is built fits in one byte.
+  const std::uint64_t limit = context.memory_budget_bytes;
+  device_.budget_bytes_.store(limit == 0 ? 0 : static_cast<std::int64_t>(std::max<std::uint64_t>(limit - std::min(limit, other_bytes), 1)));
   const std::lock_guard lock(device_.error_mutex_);
   device_.error_ = RTC_ERROR_NONE;
 }
 
 EmbreeDevice::Build::~Build() { device_.budget_bytes_.store(0); }
+
+Error EmbreeDevice::Build::out_of_memory() const {
+  constexpr double gib = 1u << 30;
+  const auto in_gib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / gib; };
+  const std::string held = fmt::format("the acceleration structure does not fit: {:.2f} GiB of it are built",
+                                       in_gib(static_cast<std::uint64_t>(std::max<std::int64_t>(device_.bytes(), 0))));
+  if (context_.memory_budget_bytes == 0) return resource_error(held).remedy("use a smaller scene");
+  return resource_error(fmt::format("{}, scene and picture take {:.2f} GiB, and the memory limit is {:.2f} GiB", held, in_gib(other_bytes_),
+                                    in_gib(context_.memory_budget_bytes)))
+      .remedy("raise --memory-limit or use a smaller scene");
+}
 
 void EmbreeDevice::Build::check() {
   context_.check_cancelled();
@@ -84,9 +98,7 @@ void EmbreeDevice::Build::check() {
     case RTC_ERROR_NONE:
       return;
     case RTC_ERROR_OUT_OF_MEMORY:
-      throw resource_error(fmt::format("the acceleration structure does not fit: Embree holds {} MiB, the memory limit is {} MiB",
-                                       device_.bytes() >> 20, context_.memory_budget_bytes >> 20))
-          .remedy("raise --memory-limit or use a smaller scene");
+      throw out_of_memory();
     case RTC_ERROR_CANCELLED:
       throw Error(ErrorCode::interrupted, "cancelled");
     case RTC_ERROR_UNSUPPORTED_CPU:

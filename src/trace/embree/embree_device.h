@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/core/context.h"
+#include "base/core/error.h"
 #include "trace/embree/embree_compat.h"
 
 namespace sightline {
@@ -28,7 +29,8 @@ class EmbreeDevice {
   /// One build at a time: while it lives, allocations count against its budget and errors are its errors.
   class Build {
    public:
-    Build(EmbreeDevice& device, const Context& context);
+    /// Of the context's memory budget, `other_bytes` are held by others.
+    Build(EmbreeDevice& device, const Context& context, std::uint64_t other_bytes);
     ~Build();
     /// Throws what went wrong since the last check: Error{resource}, {interrupted} or {bug}.
     void check();
@@ -36,8 +38,11 @@ class EmbreeDevice {
     std::uint64_t peak_bytes() const { return static_cast<std::uint64_t>(device_.peak_bytes_.load(std::memory_order_relaxed)); }
 
    private:
+    Error out_of_memory() const;
+
     EmbreeDevice& device_;
     const Context& context_;
+    std::uint64_t other_bytes_;
     std::unique_lock<std::mutex> lock_;
   };
 

@@ -29,7 +29,7 @@ class EmbreeTracer final : public Tracer {
                      previous->options_.isa != options.isa)) {
       previous = nullptr;
     }
-    run_in_arena(context, [&] { build(scene, context, previous); });
+    run_in_arena(context, [&] { build(scene, textures, context, previous); });
     scenes_.static_scene = static_ ? static_->get() : nullptr;
     scenes_.top_scene = top_ ? top_->get() : nullptr;
     scenes_.masks = &masks_;
@@ -58,9 +58,10 @@ class EmbreeTracer final : public Tracer {
   const EmbreeScenes& scenes() const { return scenes_; }
 
  private:
-  void build(const Scene& scene, const Context& context, const EmbreeTracer* previous) {
+  void build(const Scene& scene, const TextureSet& textures, const Context& context, const EmbreeTracer* previous) {
     device_ = previous ? previous->device_ : std::make_shared<EmbreeDevice>(options_.isa);
-    EmbreeDevice::Build build(*device_, context);
+    const std::uint64_t other_bytes = scene_bytes(scene) + textures.memory_bytes() + placement_.copied_bytes + options_.reserved_bytes;
+    EmbreeDevice::Build build(*device_, context, other_bytes);
 
     // Sort the instances: one list of static geometries, one mesh scene for each array that is instanced.
     std::vector<TriangleGeometry> static_geometries;

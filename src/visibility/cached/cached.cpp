@@ -5,7 +5,6 @@
 #include <mutex>
 #include <utility>
 
-#include "base/core/error.h"
 #include "visibility/cached/core.h"
 #include "visibility/cached/separate_wave.h"
 #include "visibility/cached/wave.h"
@@ -50,15 +49,12 @@ class CachedVisibility final : public Visibility {
   std::mutex mutex_;  // of shared_ itself; waves of one time use it in turn
 };
 
-// Tables of all threads, and the shared one where it is asked for; a method uses one kind or the other.
-void check_memory(const CachedVisibilitySettings& s, const Context& context) {
-  const std::uint64_t limit = context.memory_budget_bytes;
-  if (limit == 0) return;
+// Tables of all threads, or the shared one: a method uses one kind or the other.
+std::uint64_t table_bytes(const SettingsValue& value, const Context& context) {
+  const auto& s = value.as<CachedVisibilitySettings>();
   const std::uint64_t own = (std::uint64_t{sizeof(std::uint32_t)} << s.table_bits) * static_cast<std::uint64_t>(context.thread_count());
   const std::uint64_t shared = std::uint64_t{sizeof(std::uint32_t)} << s.shared_table_bits;
-  if (std::max(own, shared) > limit - std::min(limit, current_resident_bytes()))
-    throw resource_error("the tables of the visibility cache do not fit in the memory limit")
-        .remedy("lower --set table_bits or shared_table_bits, or raise --memory-limit");
+  return std::max(own, shared);
 }
 
 }  // namespace
@@ -70,8 +66,8 @@ VisibilityInfo cached_visibility() {
   info.citation = "Popov2013";
   info.unbiased = false;
   info.settings = SettingsValue::of<CachedVisibilitySettings>();
-  info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context& context) -> std::unique_ptr<Visibility> {
-    check_memory(settings.as<CachedVisibilitySettings>(), context);
+  info.table_bytes = table_bytes;
+  info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context&) -> std::unique_ptr<Visibility> {
     return std::make_unique<CachedVisibility>(std::move(world), settings.as<CachedVisibilitySettings>());
   };
   return info;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/core/error.h"
 #include "base/sample/sobol.h"
 #include "visibility/nee_plus_plus/settings.h"
 #include "visibility/nee_plus_plus/visibility_map.h"
@@ -153,14 +152,12 @@ VisibilityInfo nee_plus_plus_visibility() {
   info.citation = "Guo2020";
   info.binary = false;
   info.settings = SettingsValue::of<NeePlusPlusSettings>();
-  info.make = [](std::shared_ptr<const World> world, const SettingsValue& value, const Context& context) -> std::unique_ptr<Visibility> {
+  info.table_bytes = [](const SettingsValue& value, const Context&) {
     const auto& settings = value.as<NeePlusPlusSettings>();
-    const std::uint64_t bytes =
-        VisibilityMap::bytes(static_cast<std::uint32_t>(settings.resolution), static_cast<std::uint32_t>(settings.directions));
-    if (const std::uint64_t limit = context.memory_budget_bytes; limit > 0 && bytes > limit - std::min(limit, current_resident_bytes()))
-      throw resource_error("the table of voxel pairs does not fit in the memory limit")
-          .remedy("lower --set resolution or raise --memory-limit");
-    return std::make_unique<NeePlusPlus>(std::move(world), settings);
+    return VisibilityMap::bytes(static_cast<std::uint32_t>(settings.resolution), static_cast<std::uint32_t>(settings.directions));
+  };
+  info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context&) -> std::unique_ptr<Visibility> {
+    return std::make_unique<NeePlusPlus>(std::move(world), settings.as<NeePlusPlusSettings>());
   };
   return info;
 }
