@@ -1,8 +1,10 @@
 // sightline methods
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/core/error.h"
 #include "commands.h"
 #include "methods/method.h"
 #include "visibility/visibility.h"
@@ -120,6 +122,16 @@ void print_method(const Method& method) {
   print_settings(method.default_settings());
 }
 
+// Methods and visibilities have one list of names here.
+Error unknown_name(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Method* method : methods()) known.push_back(method->info().name);
+  for (const VisibilityInfo& info : visibilities()) known.push_back(info.name);
+  const std::string nearest = nearest_name(name, known);
+  return usage_error(fmt::format("unknown method or visibility '{}'", name))
+      .remedy(nearest.empty() ? fmt::format("known: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", nearest));
+}
+
 }  // namespace
 
 int run_methods(const CommandLine& line) {
@@ -128,15 +140,20 @@ int run_methods(const CommandLine& line) {
   for (const VisibilityInfo& info : visibilities()) {
     if (info.name == name) visibility = &info;
   }
+  const Method* method = nullptr;
+  for (const Method* known : methods()) {
+    if (known->info().name == name) method = known;
+  }
+  if (!name.empty() && !visibility && !method) throw unknown_name(name);
   if (line.methods.json) {
     Json json;
     if (visibility) {
       json = visibility_json(*visibility);
-    } else if (!name.empty()) {
-      json = method_json(find_method(name));
+    } else if (method) {
+      json = method_json(*method);
     } else {
       json = {{"methods", Json::array()}, {"visibilities", Json::array()}};
-      for (const Method* method : methods()) json["methods"].push_back(method_json(*method));
+      for (const Method* known : methods()) json["methods"].push_back(method_json(*known));
       for (const VisibilityInfo& info : visibilities()) json["visibilities"].push_back(visibility_json(info));
     }
     fmt::print("{}\n", json.dump(2));
@@ -144,11 +161,11 @@ int run_methods(const CommandLine& line) {
   }
   if (visibility) {
     print_visibility(*visibility);
-  } else if (!name.empty()) {
-    print_method(find_method(name));
+  } else if (method) {
+    print_method(*method);
   } else {
     fmt::print("Methods (--method):\n");
-    for (const Method* method : methods()) fmt::print("  {:<18} {}\n", method->info().name, method->info().help);
+    for (const Method* known : methods()) fmt::print("  {:<18} {}\n", known->info().name, known->info().help);
     fmt::print("\nVisibilities (--visibility):\n");
     for (const VisibilityInfo& info : visibilities()) fmt::print("  {:<18} {}\n", info.name, info.help);
     fmt::print("\n'sightline methods NAME' lists the settings of one.\n");

@@ -120,6 +120,11 @@ class Names(ProgramTest):
         self.check("builtin:cornell", "--method", "referense", says="'reference'")
         self.fails(2, "methods", "referense", says="'reference'")
 
+    def test_what_methods_describes(self):
+        self.fails(2, "methods", "cachd", says="'cached'")
+        self.fails(2, "methods", "shadowmap", "--json", says="'shadow-map'")
+        self.fails(2, "methods", "zzz", says=("reference", "bidirectional", "exact", "nee++", "shadow-map"))
+
     def test_visibility(self):
         self.check("builtin:cornell", "--visibility", "exakt", says="'exact'")
 
