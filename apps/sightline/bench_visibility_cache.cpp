@@ -39,6 +39,7 @@ int run_visibility_cache_bench(const CommandLine& line, Context& context) {
     options.spp.push_back(static_cast<int>(parse_integer("--spp", text, {.minimum = 1, .maximum = 65536})));
   options.size_px = command.size_px;
   options.quick = command.quick;
+  options.strip = !command.strip.empty();
   for (const std::string& path : {command.html, command.strip, command.json, command.markdown}) {
     if (!path.empty() && path != "-") check_writable(path);
   }
@@ -50,6 +51,8 @@ int run_visibility_cache_bench(const CommandLine& line, Context& context) {
   if (!command.html.empty()) write_text(command.html, cache_bench_html(results));
   if (!command.strip.empty() && results.strip)
     write_file(command.strip, encode_png(results.strip->width, results.strip->height, 3, to_srgb8(*results.strip)));
+  else if (!command.strip.empty())
+    context.warn("no frame of a camera move was made: there is no strip to write");
   if (command.json != "-" && command.markdown != "-" && command.html != "-") fmt::print("{}", markdown);
   if (!results.json["interrupted"].get<bool>()) return kDone;
   context.warn("interrupted: the results are those of the parts done so far");

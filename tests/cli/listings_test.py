@@ -160,6 +160,8 @@ class Bench(ProgramTest):
         self.fails(2, "bench", "visibility-cache", "--view", "sponza-curt", says="sponza-court")
         self.fails(2, "bench", "visibility-cache", "--ce", "0")
         self.fails(2, "bench", "visibility-cache", "--spp", "1,x")
+        for part, option in (("lookup,rivals", ("--ce", "8")), ("flicker", ("--spp", "4")), ("curves", ("--strip", "a.png"))):
+            self.fails(2, "bench", "visibility-cache", "--part", part, *option, says=(option[0], "--part"))
         self.fails(2, "bench", "trace", "--part", "curves", says="visibility-cache")
         self.fails(2, "bench", "visibility-cache", "--json", "missing/a.json", says="missing")
         run = self.ok("bench", "visibility-cache", "--view", "kitchen", "--data", ".", "--json", "-")

@@ -1,5 +1,8 @@
 #include "bench/visibility_cache/cache_bench.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "base/core/error.h"
@@ -47,6 +50,10 @@ class Plan {
       throw usage_error("unknown part '" + part + "'")
           .remedy(nearest.empty() ? "known: curves, rivals, lookup, flicker, ablations" : "did you mean '" + nearest + "'?");
     }
+    // An option that none of the parts reads is a mistake.
+    check_read("--ce", !options.ce.empty(), {"curves"});
+    check_read("--spp", !options.spp.empty(), {"curves", "rivals"});
+    check_read("--strip", options.strip, {"flicker"});
     // Before hours of work, not after.
     for (const std::string& view : options.views) check_bench_view(view);
     for (const Part& part : part_table()) {
@@ -63,6 +70,13 @@ class Plan {
   }
 
  private:
+  void check_read(const char* option, bool given, const std::vector<std::string>& readers) const {
+    if (!given ||
+        std::any_of(part_table().begin(), part_table().end(), [&](const Part& p) { return wanted(p) && contains(readers, p.name); }))
+      return;
+    throw usage_error(fmt::format("{} has no effect on the parts asked for", option))
+        .remedy(fmt::format("leave it out or add --part {}", fmt::join(readers, " or ")));
+  }
   bool wanted(const Part& part) const { return options_.parts.empty() || contains(options_.parts, part.name); }
   const CacheBenchOptions& options_;
   std::vector<std::string> views_;

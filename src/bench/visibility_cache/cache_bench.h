@@ -20,6 +20,7 @@ struct CacheBenchOptions {
   std::vector<double> ce;          ///< C_E of the curves; empty = 4, 8, 16, 36, 64
   std::vector<int> spp;            ///< samples a pixel of the curves; empty = 1, 9, 16
   std::optional<IVec2> size_px;    ///< instead of the views' own 1280x960
+  bool strip = false;              ///< the caller wants the strip of the results
   bool quick = false;              ///< small pictures and few repetitions: not to be quoted
 };
 
