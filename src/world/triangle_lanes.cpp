@@ -10,39 +10,25 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd/vec3-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, kLanes>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-
-struct V3 {
-  V x, y, z;
-};
+using namespace lanes;
 
 HWY_INLINE V3 load3(D d, const float (*axes)[kLanes], std::size_t i) {
   return {hn::Load(d, axes[0] + i), hn::Load(d, axes[1] + i), hn::Load(d, axes[2] + i)};
 }
-HWY_INLINE V3 sub(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
-HWY_INLINE V3 add(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE V3 mul(const V3& a, V s) { return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)}; }
-HWY_INLINE V dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
 HWY_INLINE V max_abs(const V3& a) { return hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z))); }
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
-}
-HWY_INLINE void store3(D d, M m, const V3& v, Vec3Batch& batch, std::size_t i) {
+HWY_INLINE void blend_store3(D d, M m, const V3& v, Vec3Batch& batch, std::size_t i) {
   hn::BlendedStore(v.x, m, d, batch.x.data() + i), hn::BlendedStore(v.y, m, d, batch.y.data() + i);
   hn::BlendedStore(v.z, m, d, batch.z.data() + i);
 }
 HWY_INLINE M in_range(D d, V length2) { return hn::And(hn::Gt(length2, hn::Set(d, 1e-30f)), hn::Lt(length2, hn::Set(d, 1e30f))); }
 
 HWY_INLINE M mask_of(D d, std::uint16_t bits, std::size_t i) {
-  const hn::RebindToUnsigned<D> du;
+  const DU du;
   const auto lane = hn::Iota(du, static_cast<std::uint32_t>(i));
   const auto bit = hn::Shl(hn::Set(du, 1u), lane);
   return hn::RebindMask(d, hn::Ne(hn::And(hn::Set(du, bits), bit), hn::Zero(du)));
@@ -51,7 +37,7 @@ HWY_INLINE M mask_of(D d, std::uint16_t bits, std::size_t i) {
 // Lanes outside the mask take the first vertex' data: any address that can be read.
 void GatherLanes(const InstanceRecord& record, const std::uint32_t* HWY_RESTRICT primitives, std::uint16_t mask, TriangleLanes& lanes) {
   const D d;
-  const hn::RebindToSigned<D> di;
+  const DI di;
   const auto three = hn::Set(di, 3);
   const auto* indices = reinterpret_cast<const std::int32_t*>(record.triangles);
   const auto* positions = reinterpret_cast<const float*>(record.positions);
@@ -76,14 +62,13 @@ void GatherLanes(const InstanceRecord& record, const std::uint32_t* HWY_RESTRICT
 
 void SetMaterialLanes(const MaterialRecord& material, std::uint16_t mask, std::size_t begin, SurfaceBatch& surfaces) {
   const D d;
-  const hn::RebindToUnsigned<D> du;
+  const DU du;
   for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
     const M active = mask_of(d, mask, i);
     const auto active_u = hn::RebindMask(du, active);
     hn::BlendedStore(hn::Set(du, material.material), active_u, du, surfaces.material.data() + begin + i);
     hn::BlendedStore(hn::Set(du, kNoLight), active_u, du, surfaces.light.data() + begin + i);
-    store3(d, active, {hn::Set(d, material.albedo.x), hn::Set(d, material.albedo.y), hn::Set(d, material.albedo.z)}, surfaces.albedo,
-           begin + i);
+    blend_store3(d, active, set3(d, material.albedo), surfaces.albedo, begin + i);
   }
   for (std::size_t i = 0; i < kLanes; ++i) {
     std::uint8_t& plain = surfaces.plain[begin + i];
@@ -94,11 +79,11 @@ void SetMaterialLanes(const MaterialRecord& material, std::uint16_t mask, std::s
 // Hits so close to an edge that inside_by may move them: rare, and left to the scalar definition. Squares avoid the roots; the slack makes
 // up for their rounding.
 HWY_INLINE M near_an_edge(D d, V margin, V u, V v, const V3& edge1, const V3& edge2, V area2) {
-  const V3 edge3 = sub(edge2, edge1);
+  const V3 edge3 = sub3(edge2, edge1);
   const V margin2 = hn::Mul(hn::Mul(margin, margin), hn::Set(d, 1.001f));
   const V w = hn::Sub(hn::Sub(hn::Set(d, 1.f), u), v);
   const auto close = [&](V b, const V3& edge) {
-    return hn::Or(hn::Lt(b, hn::Zero(d)), hn::Lt(hn::Mul(hn::Mul(b, b), area2), hn::Mul(margin2, dot(edge, edge))));
+    return hn::Or(hn::Lt(b, hn::Zero(d)), hn::Lt(hn::Mul(hn::Mul(b, b), area2), hn::Mul(margin2, dot3(edge, edge))));
   };
   return hn::Or(close(u, edge2), hn::Or(close(v, edge1), close(w, edge3)));
 }
@@ -113,32 +98,33 @@ std::uint16_t ReconstructLanes(const TriangleLanes& lanes, const float* HWY_REST
     if (hn::AllFalse(d, active)) continue;
     const V bu = hn::Load(d, u + begin + i), bv = hn::Load(d, v + begin + i), one = hn::Set(d, 1.f);
     const V3 p0 = load3(d, lanes.p[0], i);
-    const V3 edge1 = sub(load3(d, lanes.p[1], i), p0), edge2 = sub(load3(d, lanes.p[2], i), p0);
-    const V3 position = add(p0, add(mul(edge1, bu), mul(edge2, bv)));
+    const V3 edge1 = sub3(load3(d, lanes.p[1], i), p0), edge2 = sub3(load3(d, lanes.p[2], i), p0);
+    const V3 position = add3(p0, add3(scale3(edge1, bu), scale3(edge2, bv)));
     const V size = hn::Max(max_abs(edge1), max_abs(edge2));
     const V error = hn::Mul(hn::Set(d, kRounding),
                             hn::Add(hn::Mul(hn::Set(d, kPointRoundings), max_abs(position)), hn::Mul(hn::Set(d, kEdgeRoundings), size)));
-    const V3 n = cross(edge1, edge2);
-    const V length2 = dot(n, n);
+    const V3 n = cross3(edge1, edge2);
+    const V length2 = dot3(n, n);
     const M usable = hn::And(active, in_range(d, length2));
     const M near_edge = near_an_edge(d, hn::Mul(hn::Set(d, kEdgeMargin), error), bu, bv, edge1, edge2, length2);
     const M usable_far = hn::AndNot(near_edge, usable);
-    const V3 geometric = mul(mul(n, hn::Div(one, hn::Sqrt(length2))), hn::Load(d, lanes.winding + i));
+    const V3 geometric = scale3(scale3(n, hn::Div(one, hn::Sqrt(length2))), hn::Load(d, lanes.winding + i));
 
     V3 shading = geometric;
     const M smooth = hn::And(usable, mask_of(d, lanes.smooth, i));
     if (!hn::AllFalse(d, smooth)) {
       const V bw = hn::Sub(hn::Sub(one, bu), bv);
-      const V3 m = add(add(mul(load3(d, lanes.n[0], i), bw), mul(load3(d, lanes.n[1], i), bu)), mul(load3(d, lanes.n[2], i), bv));
-      const V m2 = dot(m, m);
-      const V side = hn::IfThenElse(hn::Lt(dot(m, geometric), hn::Zero(d)), hn::Set(d, -1.f), one);
-      const V3 unit = mul(m, hn::Div(side, hn::Sqrt(m2)));
+      const V3 m =
+          add3(add3(scale3(load3(d, lanes.n[0], i), bw), scale3(load3(d, lanes.n[1], i), bu)), scale3(load3(d, lanes.n[2], i), bv));
+      const V m2 = dot3(m, m);
+      const V side = hn::IfThenElse(hn::Lt(dot3(m, geometric), hn::Zero(d)), hn::Set(d, -1.f), one);
+      const V3 unit = scale3(m, hn::Div(side, hn::Sqrt(m2)));
       const M good = hn::And(smooth, in_range(d, m2));
-      shading = {hn::IfThenElse(good, unit.x, shading.x), hn::IfThenElse(good, unit.y, shading.y), hn::IfThenElse(good, unit.z, shading.z)};
+      shading = select3(good, unit, shading);
     }
-    store3(d, usable_far, position, surfaces.position, begin + i);
-    store3(d, usable_far, geometric, surfaces.geometric_normal, begin + i);
-    store3(d, usable_far, shading, surfaces.shading_normal, begin + i);
+    blend_store3(d, usable_far, position, surfaces.position, begin + i);
+    blend_store3(d, usable_far, geometric, surfaces.geometric_normal, begin + i);
+    blend_store3(d, usable_far, shading, surfaces.shading_normal, begin + i);
     hn::BlendedStore(error, usable_far, d, surfaces.error.data() + begin + i);
 
     alignas(kCacheLine) std::uint8_t bits[8] = {};

@@ -30,6 +30,8 @@ struct V3 {
 };
 
 HWY_INLINE V3 set3(D d, const Vec3& v) { return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)}; }
+/// Element i in all lanes.
+HWY_INLINE V3 set3(D d, const Vec3Batch& b, std::size_t i) { return {hn::Set(d, b.x[i]), hn::Set(d, b.y[i]), hn::Set(d, b.z[i])}; }
 HWY_INLINE V3 load3(D d, const Vec3Batch& b, std::size_t i) {
   return {hn::LoadU(d, b.x.data() + i), hn::LoadU(d, b.y.data() + i), hn::LoadU(d, b.z.data() + i)};
 }
@@ -43,6 +45,7 @@ HWY_INLINE void compress_store3(D d, const V3& v, M mask, Vec3Batch& b, std::siz
   hn::CompressStore(v.x, mask, d, b.x.data() + i), hn::CompressStore(v.y, mask, d, b.y.data() + i);
   hn::CompressStore(v.z, mask, d, b.z.data() + i);
 }
+HWY_INLINE V3 neg3(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 HWY_INLINE V3 add3(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE V3 sub3(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE V3 mul3(const V3& a, const V3& b) { return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)}; }
@@ -51,6 +54,10 @@ HWY_INLINE V3 select3(M m, const V3& a, const V3& b) {
   return {hn::IfThenElse(m, a.x, b.x), hn::IfThenElse(m, a.y, b.y), hn::IfThenElse(m, a.z, b.z)};
 }
 HWY_INLINE V dot3(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
+HWY_INLINE V3 cross3(const V3& a, const V3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
 HWY_INLINE V max3(const V3& a) { return hn::Max(a.x, hn::Max(a.y, a.z)); }
 
 }  // namespace sightline::HWY_NAMESPACE::lanes

@@ -13,31 +13,17 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include "base/simd/vec3-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes;
 
-using D = hn::CappedTag<float, 16>;
-using DU = hn::RebindToUnsigned<D>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V3 load3(D d, const Vec3Batch& batch, std::size_t i) {
-  return {hn::LoadU(d, batch.x.data() + i), hn::LoadU(d, batch.y.data() + i), hn::LoadU(d, batch.z.data() + i)};
-}
-HWY_INLINE V3 set3(D d, const Vec3Batch& batch, std::size_t i) {
-  return {hn::Set(d, batch.x[i]), hn::Set(d, batch.y[i]), hn::Set(d, batch.z[i])};
-}
-HWY_INLINE V dot(const V3& a, const V3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
-HWY_INLINE V3 neg(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
-HWY_INLINE V3 madd(const V3& a, V s, const V3& b) { return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)}; }
-HWY_INLINE V3 select(M m, const V3& a, const V3& b) {
-  return {hn::IfThenElse(m, a.x, b.x), hn::IfThenElse(m, a.y, b.y), hn::IfThenElse(m, a.z, b.z)};
+// Fused, unlike dot3.
+HWY_INLINE V fused_dot3(const V3& a, const V3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
+HWY_INLINE V3 fused_scale_add3(const V3& a, V s, const V3& b) {
+  return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
 }
 HWY_INLINE V l1(const V3& n) { return hn::Add(hn::Abs(n.x), hn::Add(hn::Abs(n.y), hn::Abs(n.z))); }
 
@@ -49,11 +35,13 @@ struct PointV {
 
 // A shading normal that faces away from the viewer gives way to the geometric one.
 HWY_INLINE V3 usable_normal(D d, const V3& wo, const V3& ns, const V3& ng) {
-  return select(hn::Gt(hn::Mul(dot(wo, ns), dot(wo, ng)), hn::Zero(d)), ns, ng);
+  return select3(hn::Gt(hn::Mul(fused_dot3(wo, ns), fused_dot3(wo, ng)), hn::Zero(d)), ns, ng);
 }
 
 // Moves p off the surface with normal n towards the side of w (offset_origin of world/surface.h).
-HWY_INLINE V3 offset_along(const V3& p, const V3& n, V error, V side) { return madd(n, hn::CopySign(hn::Mul(error, l1(n)), side), p); }
+HWY_INLINE V3 offset_along(const V3& p, const V3& n, V error, V side) {
+  return fused_scale_add3(n, hn::CopySign(hn::Mul(error, l1(n)), side), p);
+}
 
 HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleBatch& light, std::size_t lane, M valid,
                      const DirectLightOptions& options, ShadowLanes& out) {
@@ -61,12 +49,12 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
   const V zero = hn::Zero(d), one = hn::Set(d, 1.f);
   const V3 wi = load3(d, light.wi, lane);
   const V pdf = hn::LoadU(d, light.pdf.data() + lane);
-  const V cos_i = dot(wi, p.ns), side = dot(wi, p.ng);
+  const V cos_i = fused_dot3(wi, p.ns), side = fused_dot3(wi, p.ng);
 
   // Reflection by both normals, and a light sample that reaches the point at all.
   M keep = hn::And(valid, hn::Gt(pdf, zero));
-  keep = hn::And(keep, hn::Gt(hn::Mul(dot(p.wo, p.ns), cos_i), zero));
-  keep = hn::And(keep, hn::Gt(hn::Mul(dot(p.wo, p.ng), side), zero));
+  keep = hn::And(keep, hn::Gt(hn::Mul(fused_dot3(p.wo, p.ns), cos_i), zero));
+  keep = hn::And(keep, hn::Gt(hn::Mul(fused_dot3(p.wo, p.ng), side), zero));
   if (!out.in_place && hn::AllFalse(d, keep)) return;
 
   const V abs_cos = hn::Abs(cos_i);
@@ -91,14 +79,14 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
   const V3 value = {hn::Mul(hn::Mul(hn::Mul(p.albedo.x, p.throughput.x), radiance.x), scale),
                     hn::Mul(hn::Mul(hn::Mul(p.albedo.y, p.throughput.y), radiance.y), scale),
                     hn::Mul(hn::Mul(hn::Mul(p.albedo.z, p.throughput.z), radiance.z), scale)};
-  keep = hn::And(keep, hn::Gt(hn::Max(value.x, hn::Max(value.y, value.z)), zero));
+  keep = hn::And(keep, hn::Gt(max3(value), zero));
   if (!out.in_place && hn::AllFalse(d, keep)) return;
 
   const V3 origin = offset_along(p.position, p.ng, p.error, side);
   const V3 light_normal = load3(d, light.normal, lane);
   const V3 target = offset_along(load3(d, light.point, lane), light_normal, hn::LoadU(d, light.point_error.data() + lane),
-                                 hn::Neg(dot(wi, light_normal)));
-  const V3 direction = select(infinite, wi, {hn::Sub(target.x, origin.x), hn::Sub(target.y, origin.y), hn::Sub(target.z, origin.z)});
+                                 hn::Neg(fused_dot3(wi, light_normal)));
+  const V3 direction = select3(infinite, wi, sub3(target, origin));
   const V t_far = hn::IfThenElse(infinite, distance, one);
 
   const std::size_t at = out.count;
@@ -127,7 +115,7 @@ void AppendDirectLight(const ShadingPoints& points, std::uint32_t point, const L
   const DU du;
   const SurfaceBatch& s = *points.surfaces;
   PointV p;
-  p.wo = neg(set3(d, points.rays->direction, point));
+  p.wo = neg3(set3(d, points.rays->direction, point));
   p.ng = set3(d, s.geometric_normal, point);
   p.ns = usable_normal(d, p.wo, set3(d, s.shading_normal, point), p.ng);
   p.albedo = set3(d, s.albedo, point);
@@ -153,7 +141,7 @@ void AppendDirectLightEach(const ShadingPoints& points, std::uint32_t first_poin
     const M valid = hn::And(hn::FirstN(d, count - std::min(i, count)), hn::RebindMask(d, hn::Ne(flag, hn::Zero(du))));
     if (!out.in_place && hn::AllFalse(d, valid)) continue;
     PointV p;
-    p.wo = neg(load3(d, points.rays->direction, at));
+    p.wo = neg3(load3(d, points.rays->direction, at));
     p.ng = load3(d, s.geometric_normal, at);
     p.ns = usable_normal(d, p.wo, load3(d, s.shading_normal, at), p.ng);
     p.albedo = load3(d, s.albedo, at);
@@ -183,11 +171,11 @@ void SampleLambert(const ShadingPoints& points, const float* HWY_RESTRICT u, con
   const SurfaceBatch& s = *points.surfaces;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.f);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V3 wo = neg(load3(d, points.rays->direction, i));
+    const V3 wo = neg3(load3(d, points.rays->direction, i));
     const V3 ng = load3(d, s.geometric_normal, i);
     V3 n = usable_normal(d, wo, load3(d, s.shading_normal, i), ng);
     // The hemisphere on the viewer's side: two-sided Lambert.
-    const V cos_o = dot(wo, n);
+    const V cos_o = fused_dot3(wo, n);
     const V flip = hn::CopySign(one, cos_o);
     n = {hn::Mul(n.x, flip), hn::Mul(n.y, flip), hn::Mul(n.z, flip)};
 
@@ -209,7 +197,7 @@ void SampleLambert(const ShadingPoints& points, const float* HWY_RESTRICT u, con
     const V3 w = {g, hn::MulAdd(hn::Mul(n.y, n.y), f, sign), hn::Neg(n.y)};
     const V3 out = {hn::MulAdd(t.x, x, hn::MulAdd(w.x, y, hn::Mul(n.x, z))), hn::MulAdd(t.y, x, hn::MulAdd(w.y, y, hn::Mul(n.y, z))),
                     hn::MulAdd(t.z, x, hn::MulAdd(w.z, y, hn::Mul(n.z, z)))};
-    const M same_side = hn::Gt(hn::Mul(dot(out, ng), dot(wo, ng)), zero);
+    const M same_side = hn::Gt(hn::Mul(fused_dot3(out, ng), fused_dot3(wo, ng)), zero);
     hn::StoreU(out.x, d, wi.x.data() + i), hn::StoreU(out.y, d, wi.y.data() + i), hn::StoreU(out.z, d, wi.z.data() + i);
     hn::StoreU(hn::IfThenElseZero(same_side, hn::Mul(z, hn::Set(d, kInvPi))), d, pdf + i);
   }

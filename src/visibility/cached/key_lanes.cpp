@@ -12,15 +12,13 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd/vec3-inl.h"
 #include "visibility/cached/hash-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE {
 
-using D = hn::RebindToFloat<DU>;
-using DI = hn::RebindToSigned<DU>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
+using namespace lanes;
 
 /// GridPoint of some lanes without the area, and which of them lie in or near the scene.
 struct PointV {
