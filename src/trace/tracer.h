@@ -41,7 +41,8 @@ class Tracer {
   virtual ~Tracer() = default;
   /// Closest hits in [t_near, t_far]; `hits` is resized to rays.size.
   virtual void intersect(const RayBatch& rays, HitBatch& hits, BatchKind kind, RayCounts& counts) const = 0;
-  /// 1 where something lies in [t_near, t_far]; `occluded` has at least padded(rays.size) elements.
+  /// 1 where something lies in [t_near, t_far] that is more than an interface between media (InterfaceMaterial: closest hits report those);
+  /// `occluded` has at least padded(rays.size) elements.
   virtual void occluded(const RayBatch& rays, std::span<std::uint8_t> occluded, BatchKind kind, RayCounts& counts) const = 0;
   virtual Bounds bounds() const = 0;
   virtual TracerMemory memory() const = 0;
@@ -56,9 +57,9 @@ struct TracerOptions {
   bool robust = true;    ///< watertight Embree traversal (RTC_SCENE_FLAG_ROBUST)
   bool compact = false;  ///< less memory, slower
   bool alpha_masks = true;
-  std::string isa;  ///< Embree's instruction set: sse2, sse4.2, avx, avx2, avx512; empty = the best there is
   /// Of the memory budget: what later stages will hold, so that the build leaves it free.
   std::uint64_t reserved_bytes = 0;
+  std::string isa;  ///< Embree's instruction set: sse2, sse4.2, avx, avx2, avx512; empty = the best there is
 };
 
 /// Tests every primitive: the truth that other structures are compared with. Keeps a reference to the scene's arrays.

@@ -82,7 +82,7 @@ TEST(Techniques, InvisibleRectangleAndGlowingMeshLightAlike) {
   }
 }
 
-// Camera and bounce rays pass a pane without a surface; so must shadow rays, which do not yet.
+// Camera and bounce rays pass a pane without a surface; so must shadow rays.
 TEST(Techniques, AnInterfaceOnTheWayChangesNothing) {
   for (const bool mesh : {false, true}) {
     Scene with = lit_by(mesh);

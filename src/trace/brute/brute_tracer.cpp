@@ -78,11 +78,15 @@ class BruteTracer final : public Tracer {
         const auto hit = woop.intersect(placed.positions[t.x], placed.positions[t.y], placed.positions[t.z], ray.t_near, nearest.t);
         const auto primitive = static_cast<std::uint32_t>(j);
         if (!hit || masks_.is_hole(instance, primitive, hit->u, hit->v)) continue;
+        if (any && masks_.is_interface(instance, primitive)) continue;
         nearest = {hit->t, hit->u, hit->v, instance, primitive};
         if (any) return nearest;
       }
     }
-    for (std::size_t i = 0; i < spheres_.size(); ++i) closest_on_sphere(ray, static_cast<std::uint32_t>(i), nearest);
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      if (any && masks_.is_sphere_interface(static_cast<std::uint32_t>(i))) continue;
+      closest_on_sphere(ray, static_cast<std::uint32_t>(i), nearest);
+    }
     return nearest;
   }
 

@@ -1,4 +1,4 @@
-// Filter functions that make holes of alpha-masked surfaces transparent to Embree's rays.
+// Filter functions that make holes of alpha-masked surfaces transparent to Embree's rays, and interfaces to shadow rays.
 #pragma once
 
 #include <cstdint>
@@ -16,5 +16,7 @@ struct GeometryTables {
 
 /// Rejects hits in holes. The data is found through the EmbreeQuery that the context is part of.
 void reject_holes(const RTCFilterFunctionNArguments* arguments);
+/// The same for rays of occlusion, which interfaces let pass too.
+void reject_holes_and_interfaces(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace sightline

@@ -18,11 +18,12 @@ struct Geometry {
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
-  void attach(RTCScene scene, unsigned id, bool filtered) {
-    if (filtered) {
+  void attach(RTCScene scene, unsigned id, HitFilter filter) {
+    if (filter.holes) {
       rtcSetGeometryIntersectFilterFunction(handle, reject_holes);
       rtcSetGeometryOccludedFilterFunction(handle, reject_holes);
     }
+    if (filter.interfaces) rtcSetGeometryOccludedFilterFunction(handle, reject_holes_and_interfaces);
     rtcCommitGeometry(handle);
     rtcAttachGeometryByID(scene, handle, id);
   }
@@ -45,8 +46,7 @@ std::uint64_t CommittedScene::triangle_count() const {
 bool CommittedScene::serves(std::span<const TriangleGeometry> geometries) const {
   return std::equal(geometries.begin(), geometries.end(), geometries_.begin(), geometries_.end(),
                     [](const TriangleGeometry& wanted, const TriangleGeometry& have) {
-                      return wanted.positions == have.positions && wanted.triangles == have.triangles &&
-                             (have.filtered || !wanted.filtered);
+                      return wanted.positions == have.positions && wanted.triangles == have.triangles && have.filter.covers(wanted.filter);
                     });
 }
 
@@ -93,7 +93,7 @@ std::shared_ptr<const CommittedScene> SceneCommitter::commit_triangles(std::vect
                                source.positions.size());
     rtcSetSharedGeometryBuffer(geometry.handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, source.triangles.data(), 0, sizeof(UVec3),
                                source.triangles.size());
-    geometry.attach(scene->scene_, static_cast<unsigned>(i), source.filtered);
+    geometry.attach(scene->scene_, static_cast<unsigned>(i), source.filter);
   }
   commit(*scene, scene->triangle_count());
   scene->bytes_ = static_cast<std::uint64_t>(std::max<std::int64_t>(0, device_->bytes() - bytes_before));
@@ -101,14 +101,14 @@ std::shared_ptr<const CommittedScene> SceneCommitter::commit_triangles(std::vect
 }
 
 std::shared_ptr<const CommittedScene> SceneCommitter::commit_top(std::span<const InstanceGeometry> instances,
-                                                                 std::span<const Sphere> spheres, bool filter_spheres) {
+                                                                 std::span<const Sphere> spheres, HitFilter sphere_filter) {
   const std::int64_t bytes_before = device_->bytes();
   auto scene = std::make_shared<CommittedScene>(device_);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     Geometry geometry(device_->get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry.handle, instances[i].mesh->get());
     rtcSetGeometryTransform(geometry.handle, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instances[i].world_from_object[0][0]);
-    geometry.attach(scene->scene_, static_cast<unsigned>(i), false);
+    geometry.attach(scene->scene_, static_cast<unsigned>(i), {});
     scene->instanced_.push_back(instances[i].mesh);
   }
   if (!spheres.empty()) {
@@ -121,7 +121,7 @@ std::shared_ptr<const CommittedScene> SceneCommitter::commit_top(std::span<const
       const bool usable = is_finite(spheres[i].center) && std::isfinite(spheres[i].radius) && spheres[i].radius > 0;
       points[i] = usable ? Vec4(spheres[i].center, spheres[i].radius) : Vec4(0, 0, 0, -1);
     }
-    geometry.attach(scene->scene_, static_cast<unsigned>(instances.size()), filter_spheres);
+    geometry.attach(scene->scene_, static_cast<unsigned>(instances.size()), sphere_filter);
   }
   commit(*scene, 0);
   scene->bytes_ = static_cast<std::uint64_t>(std::max<std::int64_t>(0, device_->bytes() - bytes_before));

@@ -14,11 +14,19 @@
 
 namespace sightline {
 
-/// One triangle geometry; `filtered` ones ask the alpha masks at every hit.
+/// What hits of a geometry are asked.
+struct HitFilter {
+  bool holes = false;       ///< the alpha masks, at every hit
+  bool interfaces = false;  ///< whether it lets shadow rays pass, at their hits
+  HitFilter operator|(const HitFilter& o) const { return {holes || o.holes, interfaces || o.interfaces}; }
+  /// Asks all that `o` asks.
+  bool covers(const HitFilter& o) const { return (holes || !o.holes) && (interfaces || !o.interfaces); }
+};
+
 struct TriangleGeometry {
   SharedArray<Vec3> positions;
   SharedArray<UVec3> triangles;
-  bool filtered = false;
+  HitFilter filter;
 };
 
 /// Owns an RTCScene and whatever memory it shares.
@@ -59,7 +67,7 @@ class SceneCommitter {
   std::shared_ptr<const CommittedScene> commit_triangles(std::vector<TriangleGeometry> geometries);
   /// Instances take the geometry ids 0, 1, ...; the spheres follow as one geometry whose primitives have the scene's order.
   std::shared_ptr<const CommittedScene> commit_top(std::span<const InstanceGeometry> instances, std::span<const Sphere> spheres,
-                                                   bool filter_spheres);
+                                                   HitFilter sphere_filter);
 
  private:
   void commit(CommittedScene& scene, std::uint64_t triangle_count);

@@ -69,14 +69,15 @@ class EmbreeTracer final : public Tracer {
     for (std::size_t i = 0; i < placement_.instances.size(); ++i) {
       const PlacedMesh& placed = placement_.instances[i];
       const auto instance = static_cast<std::uint32_t>(i);
+      const HitFilter filter{masks_.masked(instance), masks_.has_interface(instance)};
       if (placed.kind == Kind::baked) {
-        static_geometries.push_back({placed.positions, placed.triangles, masks_.masked(instance)});
+        static_geometries.push_back({placed.positions, placed.triangles, filter});
         scenes_.tables.static_instances.push_back(instance);
         statistics_.static_triangles += placed.triangles.size();
       } else if (placed.kind == Kind::instanced) {
         TriangleGeometry& geometry = mesh_geometries[{placed.positions.data(), placed.triangles.data()}];
         if (geometry.triangles.empty()) statistics_.instanced_triangles += placed.triangles.size();
-        geometry = {placed.positions, placed.triangles, geometry.filtered || masks_.masked(instance)};
+        geometry = {placed.positions, placed.triangles, geometry.filter | filter};
         scenes_.tables.top_instances.push_back(instance);
         ++statistics_.instances;
       }
@@ -108,7 +109,8 @@ class EmbreeTracer final : public Tracer {
       const PlacedMesh& placed = placement_.instances[i];
       instances.push_back({meshes_.at({placed.positions.data(), placed.triangles.data()}), placed.world_from_object});
     }
-    if (!instances.empty() || !scene.spheres.empty()) top_ = committer.commit_top(instances, scene.spheres, masks_.any_sphere());
+    if (!instances.empty() || !scene.spheres.empty())
+      top_ = committer.commit_top(instances, scene.spheres, {masks_.any_sphere(), masks_.any_interface_sphere()});
 
     memory_.acceleration_bytes = placement_.copied_bytes + bytes_of(static_) + bytes_of(top_);
     for (const auto& [key, mesh] : meshes_) memory_.acceleration_bytes += mesh->bytes();

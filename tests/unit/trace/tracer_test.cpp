@@ -239,6 +239,102 @@ TEST(Tracer, RaysPassTheHolesOfAlphaMasks) {
   }
 }
 
+/// Triangles, instances and spheres, some of which only bound a medium; without those, what stops shadow rays.
+Scene scene_with_interfaces(bool complete) {
+  std::mt19937 random(21);
+  Scene scene;
+  Material boundary;
+  boundary.model = InterfaceMaterial{};
+  boundary.interior = MediumId(0);
+  scene.media.push_back({.name = "ink", .sigma_a = Color(1)});
+  scene.materials = {Material{}, boundary};
+  Mesh soup = triangle_soup(random, 300, 1, 0.4f);
+  const Mesh instanced = triangle_soup(random, 60, 1, 0.4f);
+  std::vector<UVec3> triangles;
+  std::vector<std::uint16_t> entries;
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+    const bool is_boundary = i % 3 != 0;
+    if (is_boundary && !complete) continue;
+    triangles.push_back(soup.triangles[i]);
+    entries.push_back(is_boundary ? 1 : 0);
+  }
+  soup.triangles = std::move(triangles);
+  soup.triangle_materials = std::move(entries);
+  soup.materials = {MaterialId(0), MaterialId(1)};
+  place(scene, soup);
+  for (const float x : {-0.5f, 0.5f}) {
+    place(scene, instanced, glm::translate(Mat4(1), Vec3{x, 0, 0}));
+    if (x < 0) continue;
+    scene.instances.back().material_override = MaterialId(1);
+    if (!complete) scene.instances.pop_back();
+  }
+  for (const float z : {-0.5f, 0.5f}) {
+    Sphere sphere;
+    sphere.center = {0, 0, z}, sphere.radius = 0.4f;
+    sphere.material = MaterialId(z < 0 ? 0 : 1);
+    if (z < 0 || complete) scene.spheres.push_back(sphere);
+  }
+  return scene;
+}
+
+TEST(Tracer, InterfacesAreHitButDoNotOcclude) {
+  std::mt19937 random(22);
+  const RayBatch rays = random_rays(random, 3000, 1);
+  const Context context;
+  const Scene scene = scene_with_interfaces(true), bare = scene_with_interfaces(false);
+  const TextureSet textures(scene, context);
+  const auto truth = make_brute_tracer(bare, textures, {}, context), brute = make_brute_tracer(scene, textures, {}, context);
+  TracerOptions no_masks;
+  no_masks.alpha_masks = false;
+  RayCounts counts;
+  HitBatch expected, expected_bare, hits;
+  brute->intersect(rays, expected, BatchKind::primary, counts);
+  truth->intersect(rays, expected_bare, BatchKind::primary, counts);
+  int passed = 0;
+  for (std::size_t i = 0; i < rays.size; ++i) passed += expected.hit(i) && !expected_bare.hit(i);
+  EXPECT_GT(passed, 300);
+  for (const TracerOptions& options : {TracerOptions(), no_masks}) {
+    const auto embree = make_embree_tracer(scene, textures, options, context);
+    for (const Tracer* tracer : {brute.get(), embree.get()}) {
+      for (const BatchKind kind : kKinds) {
+        std::vector<std::uint8_t> occluded(padded(rays.size), 7);
+        tracer->occluded(rays, occluded, kind, counts);
+        tracer->intersect(rays, hits, kind, counts);
+        int wrong = 0, different = 0;
+        for (std::size_t i = 0; i < rays.size; ++i) {
+          wrong += occluded[i] != (expected_bare.hit(i) ? 1 : 0);
+          different += hits.hit(i) != expected.hit(i) || (hits.hit(i) && std::fabs(hits.t[i] - expected.t[i]) > 1e-4f * (1 + hits.t[i]));
+        }
+        EXPECT_LE(wrong, 6) << tracer->name();
+        EXPECT_LE(different, 6) << tracer->name();
+      }
+    }
+  }
+}
+
+TEST(Tracer, AMeshThatBecomesAnInterfaceIsBuiltAnew) {
+  std::mt19937 random(23);
+  const RayBatch rays = random_rays(random, 500, 1);
+  const Context context;
+  const TextureSet textures;
+  Scene scene = scene_with_interfaces(true);
+  const MaterialId boundary(1);
+  scene.instances[2].material_override = {};
+  scene.instances[0].material_override = MaterialId(0);
+  const auto before = make_embree_tracer(scene, textures, {}, context);
+  scene.instances[0].material_override = {};
+  scene.instances[2].material_override = boundary;
+  const auto edited = make_embree_tracer(scene, textures, {}, context, before.get()),
+             fresh = make_embree_tracer(scene, textures, {}, context);
+  std::vector<std::uint8_t> a(padded(rays.size)), b(padded(rays.size));
+  RayCounts counts;
+  before->occluded(rays, a, BatchKind::shadow, counts);
+  fresh->occluded(rays, b, BatchKind::shadow, counts);
+  EXPECT_NE(a, b);
+  edited->occluded(rays, a, BatchKind::shadow, counts);
+  EXPECT_EQ(a, b);
+}
+
 TEST(Tracer, BatchesOfAnySizeLeaveNothingBehindTheirEnd) {
   std::mt19937 random(9);
   Scene scene = scene_of(triangle_soup(random, 100, 1, 0.5f));
