@@ -75,9 +75,9 @@ Vec3 mapped_normal(const Vec4& texel, float scale, const Frame3& frame, const Ve
 }
 
 /// The normal of the surface displaced by the height map `height` along the normal, by forward differences half a footprint wide
-/// [Blinn1978]; the change of the normal itself is left out, being small where the height is small against the radius of curvature.
+/// [Blinn1978]: with P' = P + h n, dP'/du = dP/du + dh/du n + h dn/du.
 Vec3 bumped_normal(const TextureSet& textures, const FloatParam& height, const TexturePoint& point, const Frame3& frame, const Vec3& dp_du,
-                   const Vec3& dp_dv) {
+                   const Vec3& dp_dv, const Vec3& dn_du, const Vec3& dn_dv) {
   constexpr float kLeastStep = 5e-4f;
   const Vec2 footprint = 0.5f * (glm::abs(point.duv_dx) + glm::abs(point.duv_dy));
   const float du = footprint.x > 0 && std::isfinite(footprint.x) ? footprint.x : kLeastStep;
@@ -90,7 +90,7 @@ Vec3 bumped_normal(const TextureSet& textures, const FloatParam& height, const T
   const float slope_v = (textures.sample(height, shifted_v) - here) / dv;
   const Vec3& n = frame.normal;
   const Vec3 tangent_u = dp_du - n * glm::dot(n, dp_du), tangent_v = dp_dv - n * glm::dot(n, dp_dv);
-  Vec3 bumped = glm::cross(tangent_u + slope_u * n, tangent_v + slope_v * n);
+  Vec3 bumped = glm::cross(tangent_u + slope_u * n + here * dn_du, tangent_v + slope_v * n + here * dn_dv);
   if (glm::dot(bumped, n) < 0) bumped = -bumped;
   return normalize_or(bumped, n);
 }
@@ -122,7 +122,8 @@ bool is_interface(const Scene& scene, MaterialId material) {
 }
 
 Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId material, const TexturePoint& point, const Frame3& frame,
-                     const Vec3& dp_du, const Vec3& dp_dv, const Vec3& geometric_normal, const Vec3& wo) {
+                     const Vec3& dp_du, const Vec3& dp_dv, const Vec3& dn_du, const Vec3& dn_dv, const Vec3& geometric_normal,
+                     const Vec3& wo) {
   const Material* found = find(scene, material);
   Frame3 result = frame;
   if (found && found->normal_map.valid()) {
@@ -132,7 +133,7 @@ Frame3 perturb_frame(const Scene& scene, const TextureSet& textures, MaterialId 
   if (found && found->bump.valid()) {
     FloatParam height(found->bump_scale);
     height.texture = found->bump;
-    result = frame_from_normal_tangent(bumped_normal(textures, height, point, result, dp_du, dp_dv), frame.tangent);
+    result = frame_from_normal_tangent(bumped_normal(textures, height, point, result, dp_du, dp_dv, dn_du, dn_dv), frame.tangent);
   }
   return face_viewer(result, frame.tangent, geometric_normal, wo);
 }

@@ -81,8 +81,8 @@ void ExampleKernel::gather_queries(std::uint32_t sample) {
     if (light.pdf <= 0) continue;
     const MaterialId material = surfaces_.material[i] == kDefaultMaterial ? MaterialId() : MaterialId(surfaces_.material[i]);
     const Bsdf bsdf = make_bsdf(world_.scene(), world_.textures(), material, detail.texture, u1_[i]);
-    const Frame3 shading =
-        perturb_frame(world_.scene(), world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, normal, wo);
+    const Frame3 shading = perturb_frame(world_.scene(), world_.textures(), material, detail.texture, detail.frame, detail.dp_du,
+                                         detail.dp_dv, detail.dn_du, detail.dn_dv, normal, wo);
     const Color value = bsdf.evaluate(shading.to_local(wo), shading.to_local(light.wi)).f_cos * light.radiance / light.pdf;
     if (is_black(value)) continue;
 

@@ -200,6 +200,40 @@ TEST_F(PerturbFrame, BumpFollowsTheSlopeOfTheHeight) {
   expect_near(perturb().normal, glm::normalize(Vec3(-0.25f, 0, 1)), 2e-3f);
 }
 
+TEST(PerturbFrameOnASphere, BumpIsTheNormalOfTheDisplacedSphere) {
+  Scene scene;
+  add(scene, DiffuseMaterial{});
+  scene.materials[0].bump = add_ramp(scene, 64);
+  scene.materials[0].bump_scale = 0.6f;
+  const TextureSet textures(scene, Context());
+  constexpr double kRadius = 0.9;
+  const auto outward = [](double u, double v) {
+    return Vec3d(std::sin(kPi * v) * std::cos(2 * kPi * u), std::sin(kPi * v) * std::sin(2 * kPi * u), std::cos(kPi * v));
+  };
+  const auto displaced = [&](double u, double v) { return (kRadius + 0.6 * u) * outward(u, v); };
+  for (const double u : {0.2, 0.5, 0.8}) {
+    for (const double v : {0.25, 0.5, 0.7}) {
+      constexpr double h = 1e-5;
+      const Vec3 n(outward(u, v));
+      const Vec3 dn_du((outward(u + h, v) - outward(u - h, v)) / (2 * h)), dn_dv((outward(u, v + h) - outward(u, v - h)) / (2 * h));
+      const Vec3 dp_du = static_cast<float>(kRadius) * dn_du, dp_dv = static_cast<float>(kRadius) * dn_dv;
+      const TexturePoint point{Vec2(static_cast<float>(u), static_cast<float>(v)), Vec2(0), Vec2(0)};
+      const Frame3 frame = frame_from_normal_tangent(n, dp_du);
+      Vec3d truth = glm::cross(displaced(u + h, v) - displaced(u - h, v), displaced(u, v + h) - displaced(u, v - h));
+      if (glm::dot(truth, Vec3d(n)) < 0) truth = -truth;
+      expect_near(perturb_frame(scene, textures, MaterialId(std::size_t{0}), point, frame, dp_du, dp_dv, dn_du, dn_dv, n).normal,
+                  Vec3(glm::normalize(truth)), 1e-3f);
+      // From within, the height is measured along the normal there.
+      Vec3d inner = glm::cross((kRadius - 0.6 * u) * (outward(u + h, v) - outward(u - h, v)) - 1.2 * h * outward(u, v),
+                               (kRadius - 0.6 * u) * (outward(u, v + h) - outward(u, v - h)));
+      if (glm::dot(inner, Vec3d(n)) > 0) inner = -inner;
+      const Frame3 turned = frame_from_normal_tangent(-n, dp_du);
+      expect_near(perturb_frame(scene, textures, MaterialId(std::size_t{0}), point, turned, dp_du, dp_dv, -dn_du, -dn_dv, -n).normal,
+                  Vec3(glm::normalize(inner)), 1e-3f);
+    }
+  }
+}
+
 TEST_F(PerturbFrame, ConstantBumpChangesNothing) {
   add(scene_, DiffuseMaterial{});
   scene_.materials[0].bump = add_constant(scene_, Vec4(3));
