@@ -14,8 +14,11 @@ constexpr std::size_t kBlock = 1024;  // rays and answers stay in the L1 and L2 
 }  // namespace
 
 Ray query_ray(const QueryBatch& queries, std::size_t i) {
-  const std::size_t e = queries.eye_of[i], l = queries.light_of[i];
-  if (l == kNoQuery) return {Vec3(0), 0, Vec3(0, 0, 1), -1};
+  if (queries.light_of[i] == kNoQuery) return {Vec3(0), 0, Vec3(0, 0, 1), -1};
+  return query_ray(queries, queries.eye_of[i], queries.light_of[i]);
+}
+
+Ray query_ray(const QueryBatch& queries, std::size_t e, std::size_t l) {
   const Vec3 x = load(queries.eye.position, e), nx = load(queries.eye.normal, e), y = load(queries.light.position, l);
   if (is_infinite(static_cast<QuerySemantic>(queries.semantic[l])))
     return {offset_origin(x, nx, queries.eye.error[e], y), 0, y, std::numeric_limits<float>::infinity()};

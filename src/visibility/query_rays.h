@@ -11,6 +11,8 @@ namespace sightline {
 
 /// The ray that decides query i, moved off both surfaces by their error bounds. t_far < t_near for a gap.
 Ray query_ray(const QueryBatch& queries, std::size_t i);
+/// The ray of a query between two ends.
+Ray query_ray(const QueryBatch& queries, std::size_t eye, std::size_t light);
 
 /// One ray for each query in packets of `queries.kind`, gaps included; weights 0 or 1.
 class QueryTracer {

@@ -5,6 +5,7 @@
 
 #include "methods/bidirectional/dimensions.h"
 #include "methods/bidirectional/vertex_density.h"
+#include "visibility/query_rays.h"
 
 namespace sightline::bidirectional {
 namespace {
@@ -17,7 +18,7 @@ double abs_cosine(const Vec3& normal, const Vec3& direction) { return std::fabs(
 
 /// The normal on the side that the path arrived from.
 Vec3 facing_normal(const PathVertex& vertex) {
-  const Vec3& n = vertex.surface.geometric_normal;
+  const Vec3& n = vertex.surface.side_normal();
   return glm::dot(n, vertex.to_previous) < 0 ? -n : n;
 }
 
@@ -57,7 +58,7 @@ class QueryWriter {
 void ConnectionQueries::clear() {
   queries.eye.resize(0), queries.resize_lights(0), queries.resize_queries(0);
   queries.kind = BatchKind::shadow_diffuse;
-  contribution.clear(), path.clear(), direct.clear();
+  contribution.clear(), path.clear(), direct.clear(), medium.clear();
 }
 
 void ConnectionQueries::add_answers(std::span<const float> weights, SampleBatch& batch) const {
@@ -67,12 +68,20 @@ void ConnectionQueries::add_answers(std::span<const float> weights, SampleBatch&
 }
 
 Connector::Connector(const World& world, const CameraImportance& camera, const PathOptions& options, const VertexDensity* density)
-    : world_(world), camera_(camera), options_(options), density_(density), has_media_(!world.scene().media.empty()) {}
+    : world_(world), camera_(camera), options_(options), density_(density), medium_rays_(world) {}
 
-Color Connector::transmittance(const PathVertex& vertex, const Vec3& direction, float distance) const {
-  if (!has_media_) return Color(1);
-  const MediumId medium = medium_towards(vertex, direction);
-  return medium.valid() ? glm::exp(-world_.scene().media[medium.index].sigma_a * distance) : Color(1);
+void Connector::absorb(std::span<const float> weights, ConnectionQueries& queries, RayCounts& rays) {
+  if (queries.medium.empty()) return;
+  arriving_.resize(queries.queries.size);
+  medium_.clear(), connection_.clear();
+  for (std::uint32_t i = 0; i < queries.queries.size; ++i) {
+    if (weights[i] == 0 || (!queries.medium[i].valid() && !medium_rays_.media().any_interface())) continue;
+    arriving_.set(connection_.size(), query_ray(queries.queries, i));
+    medium_.push_back(queries.medium[i]), connection_.push_back(i);
+  }
+  arriving_.resize(connection_.size());
+  const std::span<const Color> left = medium_rays_.attenuate(arriving_, medium_, rays);
+  for (std::size_t k = 0; k < connection_.size(); ++k) queries.contribution[connection_[k]] *= left[k];
 }
 
 // A point on a light for each eye vertex [Veach1997, §10.3.4], with the densities of paths that begin there.
@@ -120,12 +129,13 @@ void Connector::connect_light_samples(const SampleBatch& batch, const SubpathTra
       float area = 1 / samples_.pdf[i];
       if (semantic == QuerySemantic::surface)
         area *= samples_.distance[i] * samples_.distance[i] / std::max(1e-6f, std::fabs(glm::dot(n, wi)));
-      out.queries.eye.set(ends, eye.surface.position, facing_normal(eye), eye.surface.error, density_ ? density_->eye_cell_area(eye) : 0.f,
-                          vertex_id(batch, eye, 0));
+      out.queries.eye.set(ends, eye.surface.leaving_position(), facing_normal(eye), eye.surface.error,
+                          density_ ? density_->eye_cell_area(eye) : 0.f, vertex_id(batch, eye, 0));
       out.queries.light.set(ends, infinite ? wi : load(samples_.point, i), glm::dot(n, wi) > 0 ? -n : n, samples_.point_error[i],
                             density_ ? area : 0.f, vertex_id(batch, eye, 1));
       out.queries.semantic[ends] = static_cast<std::uint8_t>(semantic);
       writer.add(ends, ends, contribution, eye.path, depth == 1);
+      if (medium_rays_.media().any()) out.medium.push_back(medium_towards(eye, load(samples_.wi, i)));
       ++ends;
     }
   }
@@ -140,7 +150,6 @@ bool Connector::connect_sample(const PathVertex& eye, std::size_t lane, Color& c
   const bool infinite = std::isinf(samples_.distance[lane]), delta = samples_.is_delta[lane] != 0;
   const float distance = samples_.distance[lane];
   contribution = eye.beta * eval.f_cos * load(samples_.radiance, lane) / samples_.pdf[lane];
-  if (!infinite) contribution *= transmittance(eye, wi, distance);
   if (is_black(contribution)) return false;
 
   const double squared = infinite ? 1.0 : static_cast<double>(distance) * static_cast<double>(distance);
@@ -175,15 +184,16 @@ void Connector::connect_vertices(const SampleBatch& batch, const SubpathTracer& 
       if (!light.connectible || eye.depth + light.depth > longest || !connect_pair(eye, light, contribution)) continue;
       if (light_end_of_[y] == kNoQuery) {
         light_end_of_[y] = static_cast<std::uint32_t>(light_ends);
-        out.queries.light.set(light_ends, light.surface.position, facing_normal(light), light.surface.error,
+        out.queries.light.set(light_ends, light.surface.leaving_position(), facing_normal(light), light.surface.error,
                               density_ ? density_->light_cell_area(light) : 0.f, vertex_id(batch, light, 1));
         out.queries.semantic[light_ends++] = static_cast<std::uint8_t>(QuerySemantic::surface);
       }
       writer.add(eye_ends, light_end_of_[y], contribution, eye.path, false);
+      if (medium_rays_.media().any()) out.medium.push_back(medium_towards(eye, light.surface.position - eye.surface.position));
       used = true;
     }
     if (!used) continue;
-    out.queries.eye.set(eye_ends++, eye.surface.position, facing_normal(eye), eye.surface.error,
+    out.queries.eye.set(eye_ends++, eye.surface.leaving_position(), facing_normal(eye), eye.surface.error,
                         density_ ? density_->eye_cell_area(eye) : 0.f, vertex_id(batch, eye, 0));
   }
   writer.finish(eye_ends, light_ends);
@@ -203,7 +213,6 @@ bool Connector::connect_pair(const PathVertex& eye, const PathVertex& light, Col
   const double light_area = abs_cosine(light.surface.geometric_normal, towards_light) / squared;
   // The eye's cosine is in f_cos, by the shading normal; the light's is the geometric one, as on every edge of an eye path.
   contribution = eye.beta * at_eye.f_cos * at_light.f_cos * light.beta * static_cast<float>(light_area);
-  if (has_media_) contribution *= transmittance(eye, towards_light, distance);
   if (is_black(contribution)) return false;
   const Heuristic h = options_.heuristic;
   const double weight = connection_weight(
@@ -216,7 +225,7 @@ bool Connector::connect_pair(const PathVertex& eye, const PathVertex& light, Col
 // The light image: every vertex of a light subpath, the light's own point included, as the camera sees it.
 void Connector::connect_camera(SampleBatch& batch, const SubpathTracer& paths, RayCounts& rays, VisibilityCounts& counts) {
   if (!options_.light_image) return;
-  candidates_.clear(), candidate_rays_.clear();
+  candidates_.clear(), candidate_rays_.clear(), medium_.clear();
   const auto lens = [&](std::uint32_t path, std::uint32_t pair) { return sobol_2d(batch.key[path], batch.sample[path], pair); };
   const std::span<const LightEnd> ends = paths.light_ends();
   for (std::uint32_t path = 0; path < ends.size(); ++path) {
@@ -232,11 +241,17 @@ void Connector::connect_camera(SampleBatch& batch, const SubpathTracer& paths, R
   occluded_.resize(padded(candidates_.size()));
   world_.tracer().occluded(rays_, occluded_, BatchKind::shadow_diffuse, rays);
   counts.queries += candidates_.size(), counts.traced += candidates_.size();
+  std::span<const Color> left;
+  if (medium_rays_.media().any()) {
+    for (std::size_t i = 0; i < candidates_.size(); ++i) rays_.t_far[i] = occluded_[i] ? -1.f : 1.f;
+    left = medium_rays_.attenuate(rays_, medium_, rays);
+  }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     Splat& splat = candidates_[i];
     if (occluded_[i]) continue;
     const std::uint32_t path = splat.sample;
     splat.sample = batch.sample[path];
+    if (!left.empty()) splat.value *= left[i];
     batch.splats.push_back(splat);
   }
 }
@@ -258,7 +273,6 @@ void Connector::splat(const PathVertex* light, const LightEnd& end, std::uint32_
     const ScatterEval eval = evaluate_scatter(light->surface, towards_camera, light->to_previous);
     if (is_black(eval.f_cos)) return;
     value = light->beta * eval.f_cos * static_cast<float>(camera_pdf);
-    if (has_media_) value *= transmittance(*light, towards_camera, projection->distance);
     weight = connection_weight(h, camera_pdf, light->mis.pdf, light->mis.sum(h, static_cast<double>(eval.pdf_eye), false), 0, 1, 0);
   } else {
     if (!s.is_two_sided && !(glm::dot(normal, towards_camera) > 0)) return;
@@ -267,10 +281,12 @@ void Connector::splat(const PathVertex* light, const LightEnd& end, std::uint32_
   }
   value *= static_cast<float>(weight);
   if (is_black(value)) return;
-  const float error = light ? light->surface.error : s.point_error;
-  const Vec3 start = offset_origin(position, normal, error, towards_camera);
+  const Vec3 start =
+      light ? offset_origin(light->surface.leaving_position(), light->surface.side_normal(), light->surface.error, towards_camera)
+            : offset_origin(position, normal, s.point_error, towards_camera);
   candidate_rays_.push_back({start, 0, projection->origin - start, 1});
   // The path's number stands in for its sample until the ray has been traced.
+  if (medium_rays_.media().any()) medium_.push_back(light ? medium_towards(*light, towards_camera) : end.medium);
   candidates_.push_back({projection->film, value, !light || light->depth == 1, path});
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "methods/bidirectional/subpaths.h"
+#include "methods/media.h"
 #include "visibility/visibility.h"
 
 namespace sightline::bidirectional {
@@ -18,6 +19,7 @@ struct ConnectionQueries {
   std::vector<Color> contribution;
   std::vector<std::uint32_t> path;
   std::vector<std::uint8_t> direct;  ///< at most one surface between light and camera
+  std::vector<MediumId> medium;      ///< at the eye's end; empty without media
 
   void clear();
   void add_answers(std::span<const float> weights, SampleBatch& batch) const;
@@ -39,19 +41,20 @@ class Connector {
   void connect_light_samples(const SampleBatch& batch, const SubpathTracer& paths, ConnectionQueries& out);
   void connect_vertices(const SampleBatch& batch, const SubpathTracer& paths, ConnectionQueries& out);
   /// t = 1, with rays of its own: adds to the batch's splats what is seen.
+  /// Beer-Lambert along the connections whose answer is not 0.
+  void absorb(std::span<const float> weights, ConnectionQueries& queries, RayCounts& rays);
   void connect_camera(SampleBatch& batch, const SubpathTracer& paths, RayCounts& rays, VisibilityCounts& counts);
 
  private:
   bool connect_pair(const PathVertex& eye, const PathVertex& light, Color& contribution) const;
   bool connect_sample(const PathVertex& eye, std::size_t lane, Color& contribution) const;
   void splat(const PathVertex* light, const LightEnd& end, std::uint32_t path, const Vec2& lens);
-  Color transmittance(const PathVertex& vertex, const Vec3& direction, float distance) const;
 
   const World& world_;
   const CameraImportance& camera_;
   PathOptions options_;
   const VertexDensity* density_;
-  bool has_media_;
+  MediumRays medium_rays_;
 
   // Light samples of one depth after the other.
   Vec3Batch position_, normal_;
@@ -59,6 +62,9 @@ class Connector {
   AlignedVector<float> u_pick_, u0_, u1_;
   LightSampleBatch samples_;
   std::vector<std::uint32_t> vertex_of_;
+  RayBatch arriving_;  ///< of connections that light passes, in a scene with media
+  std::vector<MediumId> medium_;
+  std::vector<std::uint32_t> connection_;
 
   // Rays to the camera and what they carry.
   RayBatch rays_;

@@ -24,6 +24,11 @@ void Kernel::trace(const BatchRange& range, bool guides, SampleBatch& batch, Con
   numbers["connection_queries"] += static_cast<double>(connections.vertices.queries.size);
 }
 
+void Kernel::add_answers(std::span<const float> weights, ConnectionQueries& queries, SampleBatch& batch, RayCounts& rays) {
+  connector_.absorb(weights, queries, rays);
+  queries.add_answers(weights, batch);
+}
+
 void Kernel::trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCounts& rays) {
   start_batch(range, view_.width(), seed_, false, batch);
   paths_.trace_light_paths(batch, rays);
@@ -45,12 +50,12 @@ void commit(const SampleBatch& batch, const CameraImportance& camera, Frame& fra
     frame.add(Aov::position, pixel, guide.position);
     frame.add(Aov::depth, pixel, Vec3(guide.depth));
     frame.add(Aov::surface, pixel, guide.emits ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+    frame.add(Aov::alpha, pixel, Vec3(1));
   }
   std::array<CameraImportance::Share, CameraImportance::kMaxShares> shares;
   for (const Splat& splat : batch.splats) {
     if (!is_wanted(splat.sample)) continue;
     const int count = camera.shares(splat.film, shares.data());
-    frame.add(Aov::alpha, pixel, Vec3(1));
     for (int i = 0; i < count; ++i) {
       const CameraImportance::Share& share = shares[static_cast<std::size_t>(i)];
       frame.splat(share.pixel, splat.sample, share.weight * splat.value, splat.direct);

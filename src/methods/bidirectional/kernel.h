@@ -20,6 +20,8 @@ class Kernel {
 
   /// Traces the subpaths of a batch, adds what needs no query, and writes the queries for the rest.
   void trace(const BatchRange& range, bool guides, SampleBatch& batch, Connections& connections, PassStatistics& statistics);
+  /// Adds the answers to `queries` of that batch.
+  void add_answers(std::span<const float> weights, ConnectionQueries& queries, SampleBatch& batch, RayCounts& rays);
   /// The first half of it alone; the vertices are in paths().
   void trace_subpaths(const BatchRange& range, SampleBatch& batch, RayCounts& rays);
   const SubpathTracer& paths() const { return paths_; }

@@ -82,9 +82,9 @@ void render_tiles(const Pass& pass, SampleRange range, Frame& frame, PassStatist
     for (const BatchRange& part : batches_of(tile, samples, Kernel::kBatch)) {
       worker.kernel->trace(part, guides, worker.batch, worker.connections, local);
       worker.weights.resize(std::max(worker.weights.size(), worker.connections.weights_size()));
-      for (const ConnectionQueries* queries : {&worker.connections.light_samples, &worker.connections.vertices}) {
+      for (ConnectionQueries* queries : {&worker.connections.light_samples, &worker.connections.vertices}) {
         worker.visibility->visible(queries->queries, worker.weights, local.rays, local.visibility);
-        queries->add_answers(worker.weights, worker.batch);
+        worker.kernel->add_answers(worker.weights, *queries, worker.batch, local.rays);
       }
       const std::lock_guard lock(frame_mutex);
       commit(worker.batch, pass.camera, frame, samples);
@@ -141,13 +141,15 @@ void render_waves(const Pass& pass, const VertexDensity& density, SampleRange ra
     wave->trace(context, statistics.rays, statistics.visibility);
     parallel_for(context, count, 1, [&](std::size_t begin, std::size_t end) {
       AlignedVector<float>& answers = weights[static_cast<std::size_t>(worker_index()) % weights.size()];
+      std::unique_ptr<Kernel>& kernel = kernels[static_cast<std::size_t>(worker_index()) % kernels.size()];
+      if (!kernel) kernel = pass.kernel(&density);
       for (std::size_t i = begin; i < end; ++i) {
         WaveBatch& part = batches[i];
         answers.resize(std::max(answers.size(), part.connections.weights_size()));
         wave->resolve(2 * i, answers);
-        part.connections.light_samples.add_answers(answers, part.batch);
+        kernel->add_answers(answers, part.connections.light_samples, part.batch, part.statistics.rays);
         wave->resolve(2 * i + 1, answers);
-        part.connections.vertices.add_answers(answers, part.batch);
+        kernel->add_answers(answers, part.connections.vertices, part.batch, part.statistics.rays);
       }
     });
     for (std::size_t i = 0; i < count; ++i) {
@@ -232,10 +234,10 @@ std::uint32_t BidirectionalMethod::pass_multiple(const RenderJob& job) const {
   return job.visibility && !job.visibility->exact() ? samples_a_pass(job) : 1;
 }
 
-void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
-                                      const Context& context) const {
 bool BidirectionalMethod::light_image(const RenderJob& job) const { return path_options(job, CameraImportance(*job.view)).light_image; }
 
+void BidirectionalMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
+                                      const Context& context) const {
   const Pass pass(job, context);
   if (pass.options.light_image) frame.enable_light_image();
   if (job.visibility->exact()) {

@@ -19,7 +19,14 @@ Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i
 }  // namespace
 
 SubpathTracer::SubpathTracer(const World& world, const View& view, const CameraImportance& camera, const PathOptions& options)
-    : world_(world), view_(view), camera_(camera), options_(options), has_media_(!world.scene().media.empty()), has_mix_(false) {
+    : world_(world),
+      view_(view),
+      camera_(camera),
+      options_(options),
+      has_mix_(false),
+      medium_rays_(world),
+      camera_medium_(medium_rays_.around_camera(view)),
+      terminator_(world) {
   for (const Material& material : world.scene().materials) has_mix_ |= std::holds_alternative<MixMaterial>(material.model);
 }
 
@@ -34,6 +41,13 @@ void SubpathTracer::random_numbers(const SampleBatch& batch, std::uint32_t pair,
 void SubpathTracer::trace(BatchKind kind, RayCounts& counts) {
   world_.tracer().intersect(rays_, hits_, kind, counts);
   world_.surfaces(rays_, hits_, surfaces_);
+  const Media& media = medium_rays_.media();
+  if (!media.any() && !media.any_interface()) return;
+  // Beer-Lambert on the way, and on behind what only bounds a medium: that is no vertex.
+  medium_.resize(walks_.size());
+  for (std::size_t i = 0; i < walks_.size(); ++i) medium_[i] = walks_[i].medium;
+  const std::span<const Color> left = medium_rays_.travel(rays_, hits_, surfaces_, medium_, counts);
+  for (std::size_t i = 0; i < walks_.size(); ++i) walks_[i].beta *= left[i], walks_[i].medium = medium_[i];
 }
 
 void SubpathTracer::trace_light_paths(const SampleBatch& batch, RayCounts& counts) {
@@ -78,6 +92,13 @@ void SubpathTracer::trace_light_paths(const SampleBatch& batch, RayCounts& count
   }
   walks_.resize(kept);
   rays_.resize(kept);
+  if (medium_rays_.media().any()) {
+    medium_.resize(kept);
+    medium_rays_.find(rays_, medium_, counts);
+    for (std::size_t i = 0; i < kept; ++i) {
+      if (!walks_[i].from_infinity) ends_[walks_[i].path].medium = walks_[i].medium = medium_[i];
+    }
+  }
 
   // A light subpath of this many surfaces, connected to the camera, is as long as paths may be.
   for (int bounce = 0; bounce <= options_.max_bounces && !walks_.empty(); ++bounce) {
@@ -111,6 +132,7 @@ void SubpathTracer::trace_eye_paths(SampleBatch& batch, RayCounts& counts) {
     walk.from_infinity = camera_.is_orthographic();
     walk.pdf = camera_.pdf(walk.from, load(rays_.direction, i));
     walk.mis.connect = options_.light_image ? 1 : 0;
+    walk.medium = camera_medium_;
     walk.cone_width = view_.cone_width(), walk.cone_spread = view_.cone_spread();
   }
   for (int bounce = 0; bounce <= options_.max_bounces + 1 && !walks_.empty(); ++bounce) {
@@ -140,7 +162,6 @@ void SubpathTracer::make_vertices(SampleBatch* batch, std::span<const float> u_m
       if (side == Side::eye && batch->in_picture[walk.path]) add_environment(*batch, i);
       continue;
     }
-    if (has_media_ && walk.medium.valid()) walk.beta *= glm::exp(-world_.scene().media[walk.medium.index].sigma_a * hits_.t[i]);
     const Vec3 position = load(surfaces_.position, i), normal = load(surfaces_.geometric_normal, i);
     const Vec3 edge = position - walk.from;
     const double squared = walk.from_infinity ? 1.0 : static_cast<double>(length_squared(edge));
@@ -195,6 +216,11 @@ void SubpathTracer::start_vertex(std::size_t i, float u_mix, PathVertex& vertex)
   surface.geometric_normal = load(surfaces_.geometric_normal, i);
   surface.error = surfaces_.error[i];
   surface.plain = surfaces_.plain[i] != 0;
+  if (ShadowTerminator::is_on(surfaces_) && terminator_.applies(rays_, surfaces_, i)) {
+    surface.is_lifted = true;
+    surface.lifted_position = ShadowTerminator::lifted(rays_, surfaces_, i);
+    surface.lifted_normal = load(surfaces_.shading_normal, i);
+  }
   const std::uint32_t index = surfaces_.material[i];
   MaterialId material = index == kDefaultMaterial ? MaterialId{} : MaterialId{index};
   if (surface.plain) {
@@ -206,10 +232,10 @@ void SubpathTracer::start_vertex(std::size_t i, float u_mix, PathVertex& vertex)
     material = resolve_mix(scene, world_.textures(), material, detail.texture, u_mix);
     surface.tangent = detail.frame.tangent;
     surface.frame = perturb_frame(scene, world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv,
-                                  surface.geometric_normal, Vec3(0));
+                                  detail.dn_du, detail.dn_dv, surface.geometric_normal, Vec3(0));
     surface.bsdf = make_bsdf(scene, world_.textures(), material, detail.texture, u_mix);
   }
-  if (has_media_ && material.valid() && material.index < world_.scene().materials.size())
+  if (medium_rays_.media().any() && material.valid() && material.index < world_.scene().materials.size())
     surface.interior = world_.scene().materials[material.index].interior;
   vertex.connectible = !surface.bsdf.is_delta();
   vertex.beta = walk.beta;
@@ -246,11 +272,11 @@ void SubpathTracer::scatter(std::vector<PathVertex>& vertices, std::size_t first
     walk.from_infinity = false;
     walk.pdf = sample->pdf;
     walk.mis = after(vertex.mis, options_.heuristic, static_cast<double>(sample->pdf_reverse), sample->is_delta);
-    if (sample->crosses) walk.medium = glm::dot(sample->direction, surface.geometric_normal) < 0 ? surface.interior : MediumId{};
+    if (sample->crosses) walk.medium = glm::dot(sample->direction, surface.side_normal()) < 0 ? surface.interior : MediumId{};
     // A rough bounce blurs what lies behind it: a wider cone, coarser texture levels.
     if (side == Side::eye && !sample->is_delta) walk.cone_spread = std::max(walk.cone_spread, 0.25f);
-    rays_.set(kept, {offset_origin(surface.position, surface.geometric_normal, surface.error, sample->direction), 0, sample->direction,
-                     kInfinity});
+    rays_.set(kept, {offset_origin(surface.leaving_position(), surface.side_normal(), surface.error, sample->direction), 0,
+                     sample->direction, kInfinity});
     walks_[kept++] = walk;
   }
   walks_.resize(kept);

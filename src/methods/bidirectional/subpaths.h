@@ -8,6 +8,8 @@
 #include "methods/bidirectional/camera.h"
 #include "methods/bidirectional/sample_batch.h"
 #include "methods/bidirectional/vertex.h"
+#include "methods/media.h"
+#include "methods/shadow_terminator.h"
 #include "world/world.h"
 
 namespace sightline::bidirectional {
@@ -36,6 +38,7 @@ struct Walk {
 /// Where a light subpath begins.
 struct LightEnd {
   EmissionSample sample;
+  MediumId medium;  ///< around it
   bool valid = false;
 };
 
@@ -70,13 +73,17 @@ class SubpathTracer {
   const View& view_;
   const CameraImportance& camera_;
   PathOptions options_;
-  bool has_media_, has_mix_;
+  bool has_mix_;
+  MediumRays medium_rays_;
+  MediumId camera_medium_;
+  ShadowTerminator terminator_;
 
   std::vector<PathVertex> eye_, light_;
   std::vector<std::uint32_t> last_light_;
   std::vector<LightEnd> ends_;
 
   std::vector<Walk> walks_;  ///< one a ray
+  std::vector<MediumId> medium_;
   RayBatch rays_;
   HitBatch hits_;
   SurfaceBatch surfaces_;

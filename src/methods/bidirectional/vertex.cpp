@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "methods/media.h"
 #include "shade/material_eval.h"
 
 namespace sightline::bidirectional {
@@ -11,16 +12,16 @@ namespace {
 bool agrees(const Vec3& shading, const Vec3& geometric, const Vec3& w) { return glm::dot(w, shading) * glm::dot(w, geometric) > 0; }
 
 Vec3 normal_seen_from(const Surface& surface, const Vec3& w) {
-  return agrees(surface.frame.normal, surface.geometric_normal, w) ? surface.frame.normal : frame_seen_from(surface, w).normal;
+  return agrees(surface.frame.normal, surface.side_normal(), w) ? surface.frame.normal : frame_seen_from(surface, w).normal;
 }
 
 /// Reflection by the shading normal must be reflection by the geometric one, else light leaks through.
 bool is_consistent(const Surface& surface, const Vec3& local_a, const Vec3& local_b, const Vec3& a, const Vec3& b) {
-  return (local_a.z * local_b.z > 0) == (glm::dot(a, surface.geometric_normal) * glm::dot(b, surface.geometric_normal) > 0);
+  return (local_a.z * local_b.z > 0) == (glm::dot(a, surface.side_normal()) * glm::dot(b, surface.side_normal()) > 0);
 }
 
 ScatterEval evaluate_lambert(const Surface& surface, const Lambert& lambert, const Vec3& wo, const Vec3& wi) {
-  const Vec3& ng = surface.geometric_normal;
+  const Vec3& ng = surface.side_normal();
   if (!(glm::dot(wo, ng) * glm::dot(wi, ng) > 0)) return {};
   const Vec3 seen = normal_seen_from(surface, wo);
   const float cos_o = glm::dot(wo, seen), cos_i = glm::dot(wi, seen);
@@ -34,7 +35,7 @@ ScatterEval evaluate_lambert(const Surface& surface, const Lambert& lambert, con
 }  // namespace
 
 Frame3 frame_seen_from(const Surface& surface, const Vec3& w) {
-  const Vec3& ng = surface.geometric_normal;
+  const Vec3& ng = surface.side_normal();
   if (agrees(surface.frame.normal, ng, w)) return surface.frame;
   if (surface.plain) return frame_from_normal(ng);
   const Frame3 turned = face_viewer(surface.frame, surface.tangent, ng, w);
@@ -62,7 +63,7 @@ std::optional<ScatterSample> sample_from_eye(const Surface& surface, const Vec3&
   if (!sample) return std::nullopt;
   ScatterSample s;
   s.direction = seen.to_world(sample->wi);
-  s.crosses = glm::dot(s.direction, surface.geometric_normal) * glm::dot(wo, surface.geometric_normal) < 0;
+  s.crosses = glm::dot(s.direction, surface.side_normal()) * glm::dot(wo, surface.side_normal()) < 0;
   if (s.crosses != sample->is_transmission) return std::nullopt;
   s.weight = sample->weight;
   s.pdf = sample->pdf;
@@ -85,7 +86,7 @@ std::optional<ScatterSample> sample_from_light(const Surface& surface, const Vec
   ScatterSample s;
   s.direction = lit.to_world(sample->wi);
   const float leaving = glm::dot(s.direction, surface.geometric_normal);
-  s.crosses = leaving * glm::dot(wi, surface.geometric_normal) < 0;
+  s.crosses = glm::dot(s.direction, surface.side_normal()) * glm::dot(wi, surface.side_normal()) < 0;
   if (s.crosses != sample->is_transmission) return std::nullopt;
   s.is_delta = sample->is_delta;
   s.eta = sample->eta;
@@ -106,9 +107,7 @@ std::optional<ScatterSample> sample_from_light(const Surface& surface, const Vec
 }
 
 MediumId medium_towards(const PathVertex& vertex, const Vec3& w) {
-  const float side = glm::dot(w, vertex.surface.geometric_normal);
-  if (side * glm::dot(vertex.to_previous, vertex.surface.geometric_normal) > 0) return vertex.medium;
-  return side < 0 ? vertex.surface.interior : MediumId{};
+  return Media::towards(w, vertex.to_previous, vertex.surface.side_normal(), vertex.medium, vertex.surface.interior);
 }
 
 }  // namespace sightline::bidirectional

@@ -25,6 +25,12 @@ struct Surface {
   bool plain = false;              ///< Lambert without maps: its frame gives way at once
   MediumId interior;               ///< behind the surface
   Bsdf bsdf;
+  /// With a lifted shadow terminator: where rays leave from, and the normal by which sides are told apart. Densities keep to the facet.
+  bool is_lifted = false;
+  Vec3 lifted_position{0}, lifted_normal{0, 0, 1};
+
+  const Vec3& leaving_position() const { return is_lifted ? lifted_position : position; }
+  const Vec3& side_normal() const { return is_lifted ? lifted_normal : geometric_normal; }
 };
 
 struct PathVertex {

@@ -42,7 +42,13 @@ std::vector<IVec2> blocks_of(const Tile& tile) {
 
 }  // namespace
 
-PathKernel::PathKernel(const World& world, const View& view, const KernelOptions& options) : world_(world), view_(view), options_(options) {
+PathKernel::PathKernel(const World& world, const View& view, const KernelOptions& options)
+    : world_(world),
+      view_(view),
+      options_(options),
+      medium_rays_(world),
+      camera_medium_(medium_rays_.around_camera(view)),
+      terminator_(world) {
   // Rays find the lights that are geometry or surround the scene. Without any, a BSDF ray of the last bounce cannot add light.
   bool emissive = world.lights().has_environment();
   for (const Material& material : world.scene().materials) emissive |= !is_black(material.emission.value);
@@ -150,28 +156,27 @@ void PathKernel::start_paths(const Tile& tile, std::span<const IVec2> blocks, Sa
   fill(throughput_, 0, alive_, Color(1));
   fill(direct_, 0, alive_, Color(0)), fill(indirect_, 0, alive_, Color(0));
   std::fill_n(bsdf_pdf_.begin(), alive_, -1.f);
-  std::fill_n(medium_.begin(), alive_, MediumId{});
+  std::fill_n(medium_.begin(), alive_, camera_medium_);
   std::fill_n(cone_width_.begin(), alive_, view_.cone_width()), std::fill_n(cone_spread_.begin(), alive_, view_.cone_spread());
 }
 
 void PathKernel::trace(std::uint32_t bounce) {
   world_.tracer().intersect(rays_, hits_, bounce == 0 ? BatchKind::primary : BatchKind::bounce, counts_);
   world_.surfaces(rays_, hits_, surfaces_);
+  if (medium_rays_.media().any() || medium_rays_.media().any_interface()) travel();
+  terminator_.apply(rays_, surfaces_, alive_);
 }
 
 void PathKernel::add_radiance(std::uint32_t slot, bool direct, const Color& value) { add(direct ? direct_ : indirect_, slot, value); }
 
-// Beer-Lambert along the rays that travelled inside an absorbing medium.
-void PathKernel::absorb() {
-  for (std::size_t i = 0; i < alive_; ++i) {
-    if (hits_.hit(i) && medium_[i].valid())
-      store(throughput_, i, load(throughput_, i) * glm::exp(-world_.scene().media[medium_[i].index].sigma_a * hits_.t[i]));
-  }
+// Beer-Lambert on the way, and on behind what only bounds a medium: that is no bounce.
+void PathKernel::travel() {
+  const std::span<const Color> left = medium_rays_.travel(rays_, hits_, surfaces_, std::span(medium_).first(alive_), counts_);
+  for (std::size_t i = 0; i < alive_; ++i) store(throughput_, i, load(throughput_, i) * left[i]);
 }
 
 void PathKernel::add_emission(std::uint32_t bounce) {
   const LightTable& lights = world_.lights();
-  if (!world_.scene().media.empty()) absorb();
   for (std::size_t i = 0; i < alive_; ++i) {
     if (surfaces_.light[i] == kNoLight && (hits_.hit(i) || !lights.has_environment())) continue;
     const Vec3 direction = load(rays_.direction, i);
@@ -218,7 +223,8 @@ void PathKernel::evaluate_materials(std::uint32_t bounce) {
     const SurfaceDetail detail = world_.detail(rays_, hits_, i, cone_width_[i] + cone_spread_[i] * hits_.t[i]);
     float u_mix = mix ? u1_[i] : 0.f;
     const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
-    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
+    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, detail.dn_du,
+                              detail.dn_dv, geometric, wo);
     // A shading normal that faces away from the viewer would make the surface black or transparent: fall back to the geometric one.
     if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
     bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
@@ -238,13 +244,13 @@ void PathKernel::write_aovs(Frame& frame) {
     frame.add(Aov::position, pixel, position);
     frame.add(Aov::depth, pixel, Vec3(glm::length(position - load(rays_.origin, i))));
     frame.add(Aov::surface, pixel, emitter ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+    frame.add(Aov::alpha, pixel, Vec3(1));
   }
 }
 
 void PathKernel::scatter(std::uint32_t bounce) {
   gather_keys(bounce);
   // Plain surfaces have one lobe; its number, and the roulette's, are drawn only where someone reads them.
-    frame.add(Aov::alpha, pixel, Vec3(1));
   if (!all_plain_ || static_cast<int>(bounce) >= options_.roulette_start)
     sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kLobe), alive_, u0_.data(), u1_.data());
   sobol_2d(scratch_key_.data(), scratch_index_.data(), pair_of(bounce, dimension::kDirection), alive_, u2_.data(), u3_.data());
@@ -269,6 +275,7 @@ void PathKernel::scatter(std::uint32_t bounce) {
       wi = load(wi_, i), pdf = pdf_[i];
       throughput *= load(surfaces_.albedo, i);
     } else if (material && std::holds_alternative<InterfaceMaterial>(material->model)) {
+      // What a mixture has made an interface.
       wi = direction, pdf = bsdf_pdf_[i], crosses = true;
     } else {
       const Vec3 wo_local = frame_[i].to_local(-direction);

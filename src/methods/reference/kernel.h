@@ -8,9 +8,11 @@
 #include "base/core/aligned.h"
 #include "film/frame.h"
 #include "film/view.h"
+#include "methods/media.h"
 #include "methods/method.h"
 #include "methods/reference/lambert_lanes.h"
 #include "methods/reference/queries.h"
+#include "methods/shadow_terminator.h"
 #include "shade/bsdf.h"
 #include "world/world.h"
 
@@ -43,7 +45,7 @@ class PathKernel {
   void start_paths(const Tile& tile, std::span<const IVec2> blocks, SampleRange samples);
   void finish_paths(Frame& frame);
   void trace(std::uint32_t bounce);
-  void absorb();
+  void travel();
   void add_emission(std::uint32_t bounce);
   void evaluate_materials(std::uint32_t bounce);
   void sample_lights(std::uint32_t bounce);
@@ -53,6 +55,8 @@ class PathKernel {
   void draw_light_samples(std::uint32_t bounce, std::size_t count, const Vec3Batch& positions, const Vec3Batch& normals);
   bool coherent_shadows(std::uint32_t bounce) const;
   void set_inactive(std::size_t at, std::size_t point);
+  template <class Weight>
+  void absorb_shadows(std::span<const Weight> weights, Weight dark);
   bool set_general(std::size_t point, std::size_t lane, std::size_t at);
   void trace_shadows(std::uint32_t bounce);
   void ask_visibility(std::uint32_t bounce);
@@ -64,6 +68,9 @@ class PathKernel {
   const View& view_;
   KernelOptions options_;
   bool bsdf_sampling_finds_lights_;
+  MediumRays medium_rays_;
+  MediumId camera_medium_;
+  ShadowTerminator terminator_;
 
   // One element a path, for its whole life.
   std::size_t path_count_ = 0, samples_a_block_ = 0;
@@ -103,6 +110,9 @@ class PathKernel {
   ShadowLanes shadow_;
   AlignedVector<std::uint8_t> occluded_;
   RayCounts counts_;
+  RayBatch absorbed_;  ///< shadow rays that arrive, in a scene with media
+  std::vector<MediumId> absorbed_medium_;
+  std::vector<std::uint32_t> absorbed_lane_;
 
   // With a visibility other than exact rays.
   std::unique_ptr<ShadowQueries> queries_;

@@ -144,6 +144,32 @@ bool PathKernel::set_general(std::size_t point, std::size_t lane, std::size_t at
   return true;
 }
 
+// Beer-Lambert along the shadow rays that arrive: those whose weight is not `dark`.
+template <class Weight>
+void PathKernel::absorb_shadows(std::span<const Weight> weights, Weight dark) {
+  const Media& media = medium_rays_.media();
+  if (!media.any()) return;
+  absorbed_.resize(shadow_.count);
+  absorbed_medium_.clear(), absorbed_lane_.clear();
+  for (std::uint32_t r = 0; r < shadow_.count; ++r) {
+    if (weights[r] == dark || shadow_.rays.t_far[r] < 0) continue;
+    const std::uint32_t point = shadow_.point[r], material = surfaces_.material[point];
+    const Ray ray = shadow_.rays.get(r);
+    const MediumId interior = material < world_.scene().materials.size() ? world_.scene().materials[material].interior : MediumId{};
+    const MediumId medium =
+        Media::towards(ray.direction, -load(rays_.direction, point), load(surfaces_.geometric_normal, point), medium_[point], interior);
+    if (!medium.valid() && !media.any_interface()) continue;
+    absorbed_.set(absorbed_lane_.size(), ray);
+    absorbed_medium_.push_back(medium), absorbed_lane_.push_back(r);
+  }
+  absorbed_.resize(absorbed_lane_.size());
+  const std::span<const Color> left = medium_rays_.attenuate(absorbed_, absorbed_medium_, counts_);
+  for (std::size_t k = 0; k < absorbed_lane_.size(); ++k) {
+    const std::uint32_t r = absorbed_lane_[k];
+    store(shadow_.contribution, r, load(shadow_.contribution, r) * left[k]);
+  }
+}
+
 // What trace_shadows does, with weights from the visibility.
 void PathKernel::ask_visibility(std::uint32_t bounce) {
   for (std::size_t i = 0; i < alive_; ++i) point_id_[i] = hash_combine(hash_combine(key_[slot_[i]], sample_[slot_[i]]), bounce);
@@ -162,6 +188,7 @@ void PathKernel::ask_visibility(std::uint32_t bounce) {
                           bounce == 0,
                           coherent_shadows(bounce)};
   const std::span<const float> weights = queries_->visible(stage, counts_, visibility_counts_);
+  absorb_shadows(weights, 0.f);
   Vec3Batch& radiance = bounce == 0 ? direct_ : indirect_;
   for (std::size_t r = 0; r < shadow_.count;) {
     const std::uint32_t point = shadow_.point[r];
@@ -179,6 +206,7 @@ void PathKernel::trace_shadows(std::uint32_t bounce) {
   }
   shadow_.rays.size = shadow_.count;
   world_.tracer().occluded(shadow_.rays, std::span(occluded_), shadow_.in_place ? BatchKind::shadow : BatchKind::shadow_diffuse, counts_);
+  absorb_shadows(std::span<const std::uint8_t>(occluded_), std::uint8_t{1});
   Vec3Batch& radiance = bounce == 0 ? direct_ : indirect_;
   if (bounce == 0 && shadow_.in_place && options_.light_samples == 1) {
     // Before the first bounce the path of lane i is i.

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "base/sample/sobol.h"
+#include "methods/media.h"
+#include "methods/shadow_terminator.h"
 #include "methods/visibility_cache/ray_differential.h"
 #include "shade/material_eval.h"
 
@@ -57,7 +59,7 @@ struct EyePaths::Impl {
   void follow(std::size_t i, const Branch& branch, const SurfaceDetail& detail, MaterialId material, const Frame3& shading,
               const BsdfSample& lobe, const Vec3& wi, std::uint32_t lobe_number);
   void add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight, const TilePaths& paths,
-                  std::uint32_t slot, std::uint32_t turns);
+                  std::uint32_t slot, std::uint32_t turns, MediumId medium, MediumId beyond);
   float bounded(float area) const { return area > least_area_ ? std::min(area, largest_area_) : least_area_; }
   void write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const;
   void sort_by_path(std::size_t first_sample);
@@ -66,9 +68,17 @@ struct EyePaths::Impl {
   const View& view_;
   EyePathOptions options_;
   bool mixes_ = false;
-  bool shines_ = false;  ///< rays may meet a light or a background
+  bool shines_ = false;   ///< rays may meet a light or a background
+  bool travels_ = false;  ///< there are media, or interfaces to pass
   float least_area_ = 0, largest_area_ = 0;
 
+  void travel(int depth, RayCounts& rays);
+
+  MediumRays medium_rays_;
+  MediumId camera_medium_;
+  ShadowTerminator terminator_;
+  std::vector<MediumId> medium_;
+  std::span<const Color> left_;  ///< by absorption on the way to each hit
   CameraDifferential camera_;
   std::size_t first_path_ = 0, path_count_ = 0;  ///< of the batch
   AlignedVector<std::uint32_t> path_key_;        ///< of the tile
@@ -83,7 +93,9 @@ struct EyePaths::Impl {
   std::vector<std::uint32_t> begin_of_path_;
 };
 
-EyePaths::Impl::Impl(const World& w, const View& v, const EyePathOptions& o) : world_(w), view_(v), options_(o), camera_(v, 1) {
+EyePaths::Impl::Impl(const World& w, const View& v, const EyePathOptions& o)
+    : world_(w), view_(v), options_(o), medium_rays_(w), camera_medium_(medium_rays_.around_camera(v)), terminator_(w), camera_(v, 1) {
+  travels_ = medium_rays_.media().any() || medium_rays_.media().any_interface();
   shines_ = world_.lights().has_environment();
   for (const Material& material : world_.scene().materials) {
     mixes_ |= std::holds_alternative<MixMaterial>(material.model);
@@ -161,15 +173,16 @@ Branch EyePaths::Impl::first_branch(std::size_t i) const {
 
 // The sample at hit i, made in place: copying what was just written would wait for it.
 void EyePaths::Impl::add_sample(std::size_t i, float cross_section, const Frame3& shading, const Bsdf& bsdf, const Color& weight,
-                                const TilePaths& paths, std::uint32_t slot, std::uint32_t turns) {
+                                const TilePaths& paths, std::uint32_t slot, std::uint32_t turns, MediumId medium, MediumId beyond) {
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
   const float cosine = glm::dot(direction, geometric);
   const float area = bounded(cross_section / std::fmax(std::fabs(cosine), kLeastCosine));
   const std::uint32_t path_id = hash_combine(path_key_[slot], paths.sample[slot]), id = turns == 0 ? path_id : hash_combine(path_id, turns);
   // A member more belongs into this list, at its place.
-  static_assert(sizeof(EyeSample) == 3 * sizeof(Vec3) + sizeof(Frame3) + sizeof(Bsdf) + sizeof(Color) + 5 * sizeof(float));
+  static_assert(sizeof(EyeSample) ==
+                3 * sizeof(Vec3) + sizeof(Frame3) + sizeof(Bsdf) + sizeof(Color) + 5 * sizeof(float) + 2 * sizeof(MediumId));
   samples_->emplace_back(load(surfaces_.position, i), cosine > 0 ? -geometric : geometric, -direction, shading, bsdf, weight,
-                         surfaces_.error[i], area, slot, turns, id);
+                         surfaces_.error[i], area, slot, turns, id, medium, beyond);
 }
 
 void EyePaths::Impl::write_aovs(std::size_t i, std::uint32_t pixel, const Color& albedo, const Vec3& normal, Frame& frame) const {
@@ -180,6 +193,7 @@ void EyePaths::Impl::write_aovs(std::size_t i, std::uint32_t pixel, const Color&
   frame.add(Aov::position, pixel, position);
   frame.add(Aov::depth, pixel, Vec3(glm::length(position - load(rays_.origin, i))));
   frame.add(Aov::surface, pixel, surfaces_.light[i] != kNoLight ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+  frame.add(Aov::alpha, pixel, Vec3(1));
 }
 
 // Untextured Lambert surfaces that the camera sees: the greater part of most pictures.
@@ -190,18 +204,16 @@ void EyePaths::Impl::visit_plain_first_hit(std::size_t i, const TilePaths& paths
   const Color albedo = load(surfaces_.albedo, i);
   add_sample(i, camera_.cross_section(direction, hits_.t[i]),
              frame_from_normal(sees_alike(shading, geometric, direction) ? shading : geometric), Bsdf(Lambert{albedo}), Color(1), paths,
-             static_cast<std::uint32_t>(path), 0);
+             static_cast<std::uint32_t>(path), 0, {}, {});
   write_aovs(i, paths.pixel[path], albedo, shading, frame);
 }
-  frame.add(Aov::alpha, pixel, Vec3(1));
 
 // Any surface, at any depth.
 void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, TilePaths& paths, Frame& frame) {
   const Scene& scene = world_.scene();
   const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i), wo = -direction;
   const float t = hits_.t[i];
-  // Beer-Lambert on the way.
-  if (branch.medium.valid()) branch.throughput *= glm::exp(-scene.media[branch.medium.index].sigma_a * t);
+  if (travels_) branch.throughput *= left_[i], branch.medium = medium_[i];
 
   const bool plain = surfaces_.plain[i] != 0;
   SurfaceDetail detail;
@@ -223,7 +235,8 @@ void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, Til
   } else {
     float u_mix = mixes_ ? u1_[i] : 0.f;
     material = resolve_mix(scene, world_.textures(), material, detail.texture, u_mix);
-    shading = perturb_frame(scene, world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
+    shading = perturb_frame(scene, world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, detail.dn_du,
+                            detail.dn_dv, geometric, wo);
     if (!sees_alike(shading.normal, geometric, direction)) shading = frame_from_normal_tangent(geometric, shading.tangent);
     bsdf = make_bsdf(scene, world_.textures(), material, detail.texture, u_mix);
     if (depth == 0) write_aovs(i, paths.pixel[branch.slot], bsdf.albedo(), shading.normal, frame);
@@ -234,7 +247,9 @@ void EyePaths::Impl::visit_surface(int depth, std::size_t i, Branch& branch, Til
   if (!bsdf.is_delta()) {
     float cross_section = depth == 0 ? camera_.cross_section(direction, t) : branch.pixel.cross_section(direction, t);
     if (depth > 0 && lens) cross_section += branch.lens.cross_section(direction, t);
-    add_sample(i, cross_section, shading, bsdf, branch.throughput, paths, branch.slot, branch.turns);
+    const bool enters = glm::dot(direction, geometric) < 0;
+    const MediumId beyond = enters && material.index < scene.materials.size() ? scene.materials[material.index].interior : MediumId{};
+    add_sample(i, cross_section, shading, bsdf, branch.throughput, paths, branch.slot, branch.turns, branch.medium, beyond);
   }
   if (plain) return;
   const bool passes = is_interface(scene, material);
@@ -289,6 +304,13 @@ void EyePaths::Impl::follow(std::size_t i, const Branch& branch, const SurfaceDe
   next_branches_.push_back(next);
 }
 
+// Beer-Lambert on the way, and on behind what only bounds a medium.
+void EyePaths::Impl::travel(int depth, RayCounts& rays) {
+  medium_.assign(rays_.size, camera_medium_);
+  for (std::size_t i = 0; depth > 0 && i < rays_.size; ++i) medium_[i] = branches_[i].medium;
+  left_ = medium_rays_.travel(rays_, hits_, surfaces_, medium_, rays);
+}
+
 // All rays of a wave.
 void EyePaths::Impl::visit(int depth, TilePaths& paths, Frame& frame) {
   const LightTable& lights = world_.lights();
@@ -299,11 +321,12 @@ void EyePaths::Impl::visit(int depth, TilePaths& paths, Frame& frame) {
     if (!hits_.hit(i)) {
       const std::size_t path = depth == 0 ? first_path_ + i : branches_[i].slot;
       if (!background || !paths.inside[path]) continue;
-      const Color radiance = lights.environment(load(rays_.direction, i));
+      Color radiance = lights.environment(load(rays_.direction, i));
+      if (travels_) radiance *= left_[i];
       add(paths.emitted, path, depth == 0 ? radiance : branches_[i].throughput * radiance);
       continue;
     }
-    if (depth == 0 && surfaces_.plain[i] && surfaces_.light[i] == kNoLight) {
+    if (depth == 0 && surfaces_.plain[i] && surfaces_.light[i] == kNoLight && !travels_) {
       visit_plain_first_hit(i, paths, frame);
       continue;
     }
@@ -351,6 +374,8 @@ void EyePaths::trace(const Tile& tile, SampleRange range, std::uint32_t pass_sam
     for (int depth = 0; depth <= last && impl.rays_.size > 0; ++depth) {
       impl.world_.tracer().intersect(impl.rays_, impl.hits_, depth == 0 ? BatchKind::primary : BatchKind::bounce, rays);
       impl.world_.surfaces(impl.rays_, impl.hits_, impl.surfaces_);
+      if (impl.travels_) impl.travel(depth, rays);
+      impl.terminator_.apply(impl.rays_, impl.surfaces_, impl.rays_.size);
       impl.visit(depth, paths, frame);
       std::swap(impl.branches_, impl.next_branches_), std::swap(impl.rays_, impl.next_rays_);
       if (depth == 0) after_first_wave = eye_samples.size();

@@ -5,6 +5,7 @@
 
 #include "base/math/frame.h"
 #include "base/math/vec.h"
+#include "scene/ids.h"
 #include "shade/bsdf.h"
 
 namespace sightline {
@@ -22,6 +23,7 @@ struct EyeSample {
   std::uint32_t slot = 0;    ///< which path of TilePaths it belongs to
   std::uint32_t branch = 0;  ///< hash of the turns taken at mirrors and panes; 0 for what the camera sees directly
   std::uint32_t id = 0;      ///< hash of pixel, sample and branch, for random numbers and QueryEnds::id
+  MediumId medium, beyond;   ///< that the path arrived through, and on the other side of the surface
 };
 
 }  // namespace sightline

@@ -6,6 +6,7 @@
 
 #include "base/sample/sobol.h"
 #include "base/sample/warp.h"
+#include "methods/media.h"
 #include "methods/visibility_cache/counted_chunks.h"
 
 namespace sightline::vpl {
@@ -40,13 +41,14 @@ struct Path {
 class JudgePathTracer {
  public:
   JudgePathTracer(const World& world, std::span<const Judge> judges, const JudgePathOptions& options)
-      : world_(world), reader_(world), judges_(judges), options_(options) {}
+      : world_(world), reader_(world), judges_(judges), options_(options), medium_rays_(world) {}
 
   void trace(std::span<const std::uint32_t> judge, std::uint32_t first, std::vector<Candidate>& candidates, RayCounts& counts) {
     start(judge, first);
     while (!paths_.empty()) {
       world_.tracer().intersect(rays_, hits_, BatchKind::bounce, counts);
       world_.surfaces(rays_, hits_, surfaces_);
+      travel(counts);
       arrive();
       connect(candidates, counts);
       go_on();
@@ -56,6 +58,7 @@ class JudgePathTracer {
  private:
   Vec2 random(const Path& path, SurfacePair use) const { return sobol_2d(options_.key, path.index, pair_of(path.surfaces, use)); }
   void start(std::span<const std::uint32_t> judge, std::uint32_t first);
+  void travel(RayCounts& counts);
   void arrive();
   void connect(std::vector<Candidate>& candidates, RayCounts& counts);
   void add_light(const Path& path, const LightSample& light);
@@ -71,6 +74,8 @@ class JudgePathTracer {
   SurfaceBatch surfaces_;
   std::vector<Candidate> found_;  // one a shadow ray
   AlignedVector<std::uint8_t> occluded_;
+  MediumRays medium_rays_;
+  std::vector<MediumId> medium_, shadow_medium_;
 };
 
 void JudgePathTracer::start(std::span<const std::uint32_t> judge, std::uint32_t first) {
@@ -89,6 +94,18 @@ void JudgePathTracer::start(std::span<const std::uint32_t> judge, std::uint32_t 
   }
 }
 
+// Beer-Lambert on the way, and on behind what only bounds a medium. The way from the judge is that of whoever looks at the candidate.
+void JudgePathTracer::travel(RayCounts& counts) {
+  if (!medium_rays_.media().any() && !medium_rays_.media().any_interface()) return;
+  medium_.resize(paths_.size());
+  for (std::size_t i = 0; i < paths_.size(); ++i) medium_[i] = paths_[i].medium;
+  const std::span<const Color> left = medium_rays_.travel(rays_, hits_, surfaces_, medium_, counts);
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    if (paths_[i].surfaces > 0) paths_[i].candidate.beta *= left[i];
+    paths_[i].medium = medium_[i];
+  }
+}
+
 // Paths that met a surface that scatters stand on it afterwards, in the same order.
 void JudgePathTracer::arrive() {
   std::size_t kept = 0;
@@ -98,10 +115,7 @@ void JudgePathTracer::arrive() {
     path.surface = reader_.read(rays_, hits_, surfaces_, i, 0, random(path, kPick).y);
     path.wo = -load(rays_.direction, i);
     if (path.surface.bsdf.is_delta()) continue;
-    if (path.surfaces == 0)
-      path.candidate.surface = path.surface;
-    else if (path.medium.valid())
-      path.candidate.beta *= glm::exp(-world_.scene().media[path.medium.index].sigma_a * hits_.t[i]);
+    if (path.surfaces == 0) path.candidate.surface = path.surface;
     if (kept != i) paths_[kept] = path;
     ++kept;
   }
@@ -109,7 +123,7 @@ void JudgePathTracer::arrive() {
 }
 
 void JudgePathTracer::connect(std::vector<Candidate>& candidates, RayCounts& counts) {
-  found_.clear();
+  found_.clear(), shadow_medium_.clear();
   shadow_.resize(paths_.size());
   for (const Path& path : paths_) {
     const LightSample light =
@@ -119,6 +133,10 @@ void JudgePathTracer::connect(std::vector<Candidate>& candidates, RayCounts& cou
   shadow_.resize(found_.size());
   occluded_.resize(std::max(occluded_.size(), padded(found_.size())));
   world_.tracer().occluded(shadow_, occluded_, BatchKind::shadow_diffuse, counts);
+  if (medium_rays_.media().any()) {
+    const std::span<const Color> left = medium_rays_.attenuate(shadow_, shadow_medium_, counts);
+    for (std::size_t k = 0; k < found_.size(); ++k) found_[k].beta *= left[k];
+  }
   for (std::size_t k = 0; k < found_.size(); ++k) {
     if (!occluded_[k]) candidates.push_back(found_[k]);
   }
@@ -158,11 +176,11 @@ void JudgePathTracer::add_light(const Path& path, const LightSample& light) {
     // dA_y = dω r² / cos_y.
     candidate.particle_density /=
         light.is_delta ? squared : std::fmax(std::fabs(static_cast<double>(glm::dot(light.normal, light.wi))), 1e-30);
-    const MediumId medium = side * seen > 0 ? path.medium : side < 0 ? surface.interior : MediumId{};
-    if (medium.valid()) candidate.beta *= glm::exp(-world_.scene().media[medium.index].sigma_a * light.distance);
     shadow_.set(at, {origin, 0, offset_origin(light.point, light.normal, light.point_error, leaving) - origin, 1});
   }
-  if (!is_black(candidate.beta)) found_.push_back(candidate);
+  if (is_black(candidate.beta)) return;
+  found_.push_back(candidate);
+  shadow_medium_.push_back(Media::towards(light.wi, path.wo, surface.geometric_normal, path.medium, surface.interior));
 }
 
 void JudgePathTracer::go_on() {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/sample/sobol.h"
+#include "methods/media.h"
 
 namespace sightline::vpl {
 namespace {
@@ -40,15 +41,25 @@ std::vector<Judge> find_judges(const World& world, const View& view, std::uint32
   }
   std::vector<Judge> judges;
   const SurfaceReader reader(world);
+  MediumRays medium_rays(world);
+  const bool travels = medium_rays.media().any() || medium_rays.media().any_interface();
+  const MediumId around = medium_rays.around_camera(view);
+  for (Path& path : paths) path.medium = around;
+  std::vector<MediumId> medium;
   for (int depth = 0; depth < kMaxDepth && !paths.empty(); ++depth) {
     world.tracer().intersect(batch, hits, depth == 0 ? BatchKind::primary : BatchKind::bounce, rays);
     world.surfaces(batch, hits, surfaces);
+    if (travels) {
+      medium.resize(paths.size());
+      for (std::size_t i = 0; i < paths.size(); ++i) medium[i] = paths[i].medium;
+      const std::span<const Color> left = medium_rays.travel(batch, hits, surfaces, medium, rays);
+      for (std::size_t i = 0; i < paths.size(); ++i) paths[i].weight *= left[i], paths[i].medium = medium[i];
+    }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (!hits.hit(i)) continue;
       Path path = paths[i];
       const Vec3 direction = load(batch.direction, i);
-      if (path.medium.valid()) path.weight *= glm::exp(-world.scene().media[path.medium.index].sigma_a * hits.t[i]);
       const std::uint32_t pair = kFirstSurface + 2 * static_cast<std::uint32_t>(depth);
       const Vec2 lobe = sobol_2d(key, path.index, pair);
       const SurfacePoint surface = reader.read(batch, hits, surfaces, i, view.cone_width() + view.cone_spread() * hits.t[i], lobe.y);

@@ -46,6 +46,7 @@ EyeKernel::EyeKernel(const World& world, const View& view, Visibility& visibilit
       spatial_order_(visibility.exact()),
       first_segment_(visibility.cluster_edge() * visibility.cluster_edge()),
       eye_paths_(world, view, {settings.specular_depth, settings.least_weight, context.seed}),
+      absorption_(world),
       worker_(visibility.worker()) {}
 
 void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& pass, Frame& frame, PassStatistics& statistics) {
@@ -116,10 +117,12 @@ void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
 void EyeKernel::set_eye_ends(EyeRange chunk) {
   queries_.eye.resize(chunk.second - chunk.first);
   chunk_slot_.resize(queries_.eye.size);
+  if (absorption_.any()) absorption_.begin(queries_.eye.size);
   for (std::size_t k = chunk.first; k < chunk.second; ++k) {
     const EyeSample& e = eye(k);
     queries_.eye.set(k - chunk.first, e.position, e.geometric_normal, e.error, e.area, e.id);
     chunk_slot_[k - chunk.first] = e.slot;
+    if (absorption_.any()) absorption_.set_eye(k - chunk.first, e);
   }
 }
 
@@ -310,6 +313,7 @@ void EyeKernel::ask(Vec3Batch& radiance, bool shared_lights, PassStatistics& sta
     std::copy_n(contributions_.light.data(), count, queries_.light_of.data());
     worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
   }
+  if (absorption_.any()) absorption_.apply(queries_, weights_, contributions_, statistics.rays);
   for (std::size_t begin = 0; begin < count;) {
     const std::uint32_t k = contributions_.eye[begin];
     std::size_t end = begin + 1;

@@ -6,6 +6,7 @@
 
 #include "methods/method.h"
 #include "methods/visibility_cache/contributions.h"
+#include "methods/visibility_cache/eye_absorption.h"
 #include "methods/visibility_cache/eye_paths.h"
 #include "methods/visibility_cache/settings.h"
 #include "methods/visibility_cache/virtual_point_lights.h"
@@ -70,6 +71,7 @@ class EyeKernel {
   bool spatial_order_;   ///< every query is a ray: neighbours side by side trace fastest
   float first_segment_;  ///< C_E²
   EyePaths eye_paths_;
+  EyeAbsorption absorption_;
   std::unique_ptr<VisibilityWorker> worker_;
 
   TilePaths paths_;

@@ -6,6 +6,7 @@
 
 #include "base/parallel/parallel.h"
 #include "base/sample/sobol.h"
+#include "methods/media.h"
 
 namespace sightline::vpl {
 namespace {
@@ -36,22 +37,25 @@ struct Particle {
 /// Traces one batch after the other; one a chunk of work.
 class ParticleTracer {
  public:
-  ParticleTracer(const World& world, const ParticleOptions& options) : world_(world), reader_(world), options_(options) {
+  ParticleTracer(const World& world, const ParticleOptions& options)
+      : world_(world), reader_(world), options_(options), medium_rays_(world) {
     for (const Material& material : world.scene().materials) has_mix_ |= std::holds_alternative<MixMaterial>(material.model);
   }
 
   void trace(std::uint32_t first, std::size_t count, std::vector<ParticleVertex>& vertices, RayCounts& counts) {
-    emit(first, count);
+    emit(first, count, counts);
     for (int surface = 0; surface < options_.max_bounces && !particles_.empty(); ++surface) {
       world_.tracer().intersect(rays_, hits_, BatchKind::bounce, counts);
       world_.surfaces(rays_, hits_, surfaces_);
+      travel(counts);
       arrive_and_scatter(surface, vertices);
     }
   }
 
  private:
   Vec2 random(std::uint32_t index, std::uint32_t pair) const { return sobol_2d(options_.key, index, pair); }
-  void emit(std::uint32_t first, std::size_t count);
+  void emit(std::uint32_t first, std::size_t count, RayCounts& counts);
+  void travel(RayCounts& counts);
   void arrive_and_scatter(int surface, std::vector<ParticleVertex>& vertices);
   void set_densities(const Vec3& direction, const ParticleVertex& vertex, Particle& particle) const;
 
@@ -59,13 +63,15 @@ class ParticleTracer {
   SurfaceReader reader_;
   ParticleOptions options_;
   bool has_mix_ = false;
+  MediumRays medium_rays_;
+  std::vector<MediumId> medium_;
   std::vector<Particle> particles_;  // one a ray
   RayBatch rays_;
   HitBatch hits_;
   SurfaceBatch surfaces_;
 };
 
-void ParticleTracer::emit(std::uint32_t first, std::size_t count) {
+void ParticleTracer::emit(std::uint32_t first, std::size_t count, RayCounts& counts) {
   particles_.resize(count);
   rays_.resize(count);
   std::size_t kept = 0;
@@ -87,6 +93,21 @@ void ParticleTracer::emit(std::uint32_t first, std::size_t count) {
   }
   particles_.resize(kept);
   rays_.resize(kept);
+  if (!medium_rays_.media().any()) return;
+  medium_.resize(kept);
+  medium_rays_.find(rays_, medium_, counts);
+  for (std::size_t i = 0; i < kept; ++i) {
+    if (!particles_[i].emission.is_infinite) particles_[i].medium = medium_[i];
+  }
+}
+
+// Beer-Lambert on the way, and on behind what only bounds a medium.
+void ParticleTracer::travel(RayCounts& counts) {
+  if (!medium_rays_.media().any() && !medium_rays_.media().any_interface()) return;
+  medium_.resize(particles_.size());
+  for (std::size_t i = 0; i < particles_.size(); ++i) medium_[i] = particles_[i].medium;
+  const std::span<const Color> left = medium_rays_.travel(rays_, hits_, surfaces_, medium_, counts);
+  for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].beta *= left[i], particles_[i].medium = medium_[i];
 }
 
 // Densities of the pair of light point and first surface.
@@ -115,7 +136,6 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
     Particle particle = particles_[i];
     const Vec3 direction = load(rays_.direction, i);
     const float cosine = std::fabs(glm::dot(load(surfaces_.geometric_normal, i), direction));
-    if (particle.medium.valid()) particle.beta *= glm::exp(-world_.scene().media[particle.medium.index].sigma_a * hits_.t[i]);
     particle.beta /= cosine;
     if (!is_finite(particle.beta) || is_black(particle.beta)) continue;
 

@@ -92,8 +92,8 @@ SurfacePoint SurfaceReader::read(const RayBatch& rays, const HitBatch& hits, con
   } else {
     const SurfaceDetail detail = world_.detail(rays, hits, i, cone_width);
     material = resolve_mix(scene, world_.textures(), material, detail.texture, u_mix);
-    point.frame = perturb_frame(scene, world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv,
-                                point.geometric_normal, Vec3(0));
+    point.frame = perturb_frame(scene, world_.textures(), material, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, detail.dn_du,
+                                detail.dn_dv, point.geometric_normal, Vec3(0));
     point.bsdf = make_bsdf(scene, world_.textures(), material, detail.texture, u_mix);
   }
   if (has_media_ && material.valid() && material.index < scene.materials.size()) point.interior = scene.materials[material.index].interior;
