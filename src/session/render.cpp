@@ -70,13 +70,13 @@ void write_checkpoint(const std::filesystem::path& path, const RenderResult& res
 
 }  // namespace
 
-std::string simd_target_name() { return simd_target(); }
 AovSet frame_layers(const RenderRequest& request) {
   AovSet aovs = request.aovs;
   if (request.target_error) aovs.add(Aov::variance);
   return aovs;
 }
 
+std::string simd_target_name() { return simd_target(); }
 
 namespace {
 
@@ -145,11 +145,11 @@ RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IV
   if (samples.end > job.total_spp) throw usage_error(fmt::format("--sample-range ends at {}, but --spp is {}", samples.end, spp));
   const View view(camera, size_px, spp == 1 ? PixelFilter(PixelFilter::Kind::centre) : filter);
   job.view = &view;
-  const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
   // All of it is known to fit before any of it is allocated. The frame comes first: visibilities that take what is free then see it.
   check_memory(with_world(picture_needs(size_px, request, method.light_image(job), context), *world), context);
   const AovSet aovs = frame_layers(request);
   Frame frame(size_px.x, size_px.y, aovs, samples.begin);
+  const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
   job.visibility = visibility.get();
   method.check(world->scene(), job);
   const std::uint32_t multiple = std::max(1u, method.pass_multiple(job));

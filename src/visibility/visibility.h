@@ -72,10 +72,10 @@ struct VisibilityInfo {
   bool deterministic = true;  ///< same seed, same answers, whatever the number of threads
   SettingsValue settings;
   std::unique_ptr<Visibility> (*make)(std::shared_ptr<const World> world, const SettingsValue& settings, const Context& context);
-};
-
   /// Bytes of tables that it will have with these settings, whatever the scene; null: none, or what the memory budget leaves.
   std::uint64_t (*table_bytes)(const SettingsValue& settings, const Context& context) = nullptr;
+};
+
 /// The explicit table; names are unique.
 const std::vector<VisibilityInfo>& visibilities();
 const VisibilityInfo& find_visibility(std::string_view name);  ///< Error{usage} with the nearest name
