@@ -60,6 +60,12 @@ bool AreaLight::out_of_reach(const Vec3& position, const Vec3& normal) const {
   });
 }
 
+bool AreaLight::above(const Vec3& position, const Vec3& normal) const {
+  return std::ranges::all_of(members, [&](const Member& member) {
+    return std::ranges::all_of(member.polygon, [&](const Vec3& corner) { return glm::dot(corner - position, normal) > 0; });
+  });
+}
+
 std::vector<AreaLight> area_lights(const LightTable& lights, std::size_t limit) {
   std::vector<std::uint32_t> entries;
   for (std::uint32_t i = 0; i < lights.size() && lights.flat(i); ++i) {

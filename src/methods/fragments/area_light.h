@@ -30,6 +30,8 @@ struct AreaLight {
   std::size_t pick(float& u) const;
   /// No member sends light to a point with this normal: all below its horizon, or turned away.
   bool out_of_reach(const Vec3& position, const Vec3& normal) const;
+  /// Every point of it lies above the plane.
+  bool above(const Vec3& position, const Vec3& normal) const;
 };
 
 /// Every flat light with power, at most `limit` of them; where there are more, neighbours are folded together.

@@ -18,7 +18,10 @@ class Composer {
   void add(const GBuffer& g, const RootTile& tile, const AreaLight& light, std::span<const float* const> signal, Vec3Batch& radiance);
 
  private:
-  std::vector<std::uint32_t> pixels_;
+  void add_cut(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance);
+
+  std::vector<std::uint32_t> pixels_, cut_;
+  std::vector<Vec3> polygon_;
   Vec3Batch position_, normal_;
   AlignedVector<float> form_factor_;
 };

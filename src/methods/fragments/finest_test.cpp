@@ -106,6 +106,7 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
         }
         term_[i] = term;
         sums.all += term;
+        sums.asked += term > 0;
         queries_.eye_of[i] = static_cast<std::uint32_t>(p), queries_.light_of[i] = term > 0 ? static_cast<std::uint32_t>(i) : kNoQuery;
         queries_.light.cell_area[i] = world_.lights().area(entry_[i]) / selection_[i];
       }
@@ -115,8 +116,6 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
     for (std::size_t p = 0; p < points; ++p) {
       Sums& sums = sums_[which[begin + p]];
       for (std::size_t i = p * count; i < (p + 1) * count; ++i) {
-        if (!(term_[i] > 0)) continue;
-        ++sums.asked;
         if (!(weights_[i] > 0.5f)) continue;
         ++sums.seen;
         sums.visible += term_[i];

@@ -38,7 +38,7 @@ std::uint32_t ProbeTest::set_of(const Fragment& f) const {
 }
 
 void ProbeTest::set_light(const AreaLight& light, const LightPoints& points) {
-  points_ = &points;
+  light_ = &light, points_ = &points;
   const std::size_t total = static_cast<std::size_t>(LightPoints::kSets) * points.count;
   queries_.resize_lights(total);
   std::copy_n(points.point.x.data(), total, queries_.light.position.x.data());
@@ -60,7 +60,16 @@ void ProbeTest::add_eye(const GBuffer& g, IVec2 pixel) {
   const Vec3 position = load(g.position, at), normal = load(g.geometric_normal, at);
   float area = 0;
   if (!exact_) area = footprint_.area(orthographic_ ? camera_ : normalize_or(position - camera_, -normal), g.depth[at], normal);
+  above_.resize(std::max(above_.size(), queries_.eye.size));
+  above_[to] = light_->above(position, normal);
   queries_.eye.set(to, position, normal, g.error[at], area, static_cast<std::uint32_t>(at));
+}
+
+// Points of the light below the surface itself are not seen, whatever lies there.
+void ProbeTest::add_query(std::size_t query, std::uint32_t eye, std::uint32_t light) {
+  const bool seen =
+      above_[eye] || glm::dot(load(queries_.light.position, light) - load(queries_.eye.position, eye), load(queries_.eye.normal, eye)) > 0;
+  queries_.eye_of[query] = eye, queries_.light_of[query] = seen ? light : kNoQuery;
 }
 
 void ProbeTest::ask(PassStatistics& statistics) {
@@ -83,13 +92,11 @@ void ProbeTest::test(const GBuffer& g, std::span<const Fragment> fragments, std:
         const auto eye = static_cast<std::uint32_t>(queries_.eye.size);
         if (f.level < kManyProbesLevel) {
           add_eye(g, probe_pixel(g, f, q));
-          for (std::uint32_t k = 0; k < rays; ++k, ++query) queries_.eye_of[query] = eye, queries_.light_of[query] = light + k;
+          for (std::uint32_t k = 0; k < rays; ++k, ++query) add_query(query, eye, light + k);
         } else {
           for (int sub = 0; sub < 4; ++sub) add_eye(g, probe_pixel(g, f, q, sub));
-          for (std::uint32_t k = 0; k < rays; ++k, ++query) {
-            queries_.eye_of[query] = eye + static_cast<std::uint32_t>(sub_probe_of(k, rays));
-            queries_.light_of[query] = light + k;
-          }
+          for (std::uint32_t k = 0; k < rays; ++k, ++query)
+            add_query(query, eye + static_cast<std::uint32_t>(sub_probe_of(k, rays)), light + k);
         }
       }
     }
@@ -123,7 +130,7 @@ void ProbeTest::confirm(const GBuffer& g, std::span<const Fragment> fragments, s
       const auto eye = static_cast<std::uint32_t>(queries_.eye.size);
       add_eye(g, pixel);
       const std::uint32_t light = set_of(f) * rays;
-      for (std::uint32_t k = 0; k < rays; ++k, ++query) queries_.eye_of[query] = eye, queries_.light_of[query] = light + k;
+      for (std::uint32_t k = 0; k < rays; ++k, ++query) add_query(query, eye, light + k);
     }
     ask(statistics);
     const float* weight = weights_.data();

@@ -43,6 +43,7 @@ class ProbeTest {
 
  private:
   void add_eye(const GBuffer& g, IVec2 pixel);
+  void add_query(std::size_t query, std::uint32_t eye, std::uint32_t light);
   void ask(PassStatistics& statistics);
 
   EyeFootprint footprint_;
@@ -51,7 +52,9 @@ class ProbeTest {
   bool exact_;
   std::uint64_t seed_;
   std::unique_ptr<VisibilityWorker> worker_;
+  const AreaLight* light_ = nullptr;
   const LightPoints* points_ = nullptr;
+  std::vector<std::uint8_t> above_;  ///< by eye end: the whole light lies above its surface
   QueryBatch queries_;
   AlignedVector<float> weights_;
 };

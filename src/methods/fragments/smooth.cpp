@@ -1,0 +1,129 @@
+#include "methods/fragments/smooth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/math/vec3_batch.h"
+#include "methods/fragments/smooth_window.h"
+
+namespace sightline {
+namespace {
+
+using namespace smoothing;
+
+bool receives(PixelKind kind) { return kind == PixelKind::diffuse || kind == PixelKind::analytic; }
+
+bool on_same_surface(const GBuffer& g, std::size_t centre, std::size_t other) {
+  const Vec3 d = load(g.position, other) - load(g.position, centre);
+  const float distance = glm::dot(d, load(g.geometric_normal, centre)), limit = kMaxPlaneDistance * g.depth[centre];
+  return glm::dot(load(g.shading_normal, centre), load(g.shading_normal, other)) >= kMinCosine && distance * distance <= limit * limit &&
+         distance * distance <= kMaxSlope * kMaxSlope * length_squared(d);
+}
+
+constexpr int kBlock = kSmoothReach;
+constexpr int kBlocks = kRootSize / kBlock;
+
+/// Which blocks of a tile see nothing but one value around them: most of a picture, which is lit or dark.
+class Uniform {
+ public:
+  Uniform(const SmoothInput& input, const RootTile& tile) {
+    const GBuffer& g = input.g;
+    for (int j = -1; j <= kBlocks; ++j)
+      for (int i = -1; i <= kBlocks; ++i) {
+        Range& range = at(i, j);
+        const int x0 = std::max(tile.x0 + i * kBlock, 0), y0 = std::max(tile.y0 + j * kBlock, 0);
+        const int x1 = std::min(tile.x0 + (i + 1) * kBlock, g.width), y1 = std::min(tile.y0 + (j + 1) * kBlock, g.height);
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) {
+            const float v = input.signal[g.at(x, y)];
+            range.low = std::min(range.low, v), range.high = std::max(range.high, v);
+          }
+      }
+  }
+  bool operator()(int i, int j) const {
+    Range range;
+    for (int dj = -1; dj <= 1; ++dj)
+      for (int di = -1; di <= 1; ++di) {
+        const Range& r = at(i + di, j + dj);
+        range.low = std::min(range.low, r.low), range.high = std::max(range.high, r.high);
+      }
+    return range.low >= range.high;
+  }
+
+ private:
+  struct Range {
+    float low = INFINITY, high = -INFINITY;
+  };
+  Range& at(int i, int j) { return ranges_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)]; }
+  const Range& at(int i, int j) const { return ranges_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)]; }
+
+  std::array<std::array<Range, kBlocks + 2>, kBlocks + 2> ranges_;
+};
+
+}  // namespace
+
+float smooth_pixel(const SmoothInput& input, int x, int y) {
+  const GBuffer& g = input.g;
+  const std::size_t centre = g.at(x, y);
+  const float own = input.signal[centre];
+  if (!receives(g.kind[centre])) return own;
+  const int step = step_of(input.level[centre]);
+
+  // Moments of the window, values relative to the pixel's own.
+  float count = 0, fine = 0, sx = 0, sy = 0, sxx = kRidge, sxy = 0, syy = kRidge, t = 0, tx = 0, ty = 0, txx = 0, txy = 0, tyy = 0, tt = 0;
+  for (int j = -kRadius; j <= kRadius; ++j)
+    for (int i = -kRadius; i <= kRadius; ++i) {
+      const int px = x + i * step, py = y + j * step;
+      if (!g.inside(px, py)) continue;
+      const std::size_t at = g.at(px, py);
+      if (!receives(g.kind[at]) || !on_same_surface(g, centre, at)) continue;
+      const float v = input.signal[at] - own, fx = static_cast<float>(i), fy = static_cast<float>(j);
+      count += 1, fine += input.level[at] == 0 ? 1.f : 0.f;
+      sx += fx, sy += fy, sxx += fx * fx, sxy += fx * fy, syy += fy * fy;
+      t += v, tx += v * fx, ty += v * fy, txx += v * fx * fx, txy += v * fx * fy, tyy += v * fy * fy, tt += v * v;
+    }
+  if (count < kLeastCount) return own;
+
+  // The plane a + b x + c y, x and y relative to the window's centre of gravity.
+  const float mx = sx / count, my = sy / count, mean = t / count;
+  const float vxx = sxx - sx * mx, vxy = sxy - sx * my, vyy = syy - sy * my, ux = tx - t * mx, uy = ty - t * my;
+  const float per_determinant = 1 / std::max(vxx * vyy - vxy * vxy, 1e-12f);
+  const float b = (vyy * ux - vxy * uy) * per_determinant, c = (vxx * uy - vxy * ux) * per_determinant;
+  const float plane = mean - b * mx - c * my;
+  float squares = tt - t * mean - b * ux - c * uy, freedom = count - 3, curvature = 0;
+
+  // On a whole window the polynomials x^2 - 2, y^2 - 2 and x y are orthogonal to those of the plane, with squares 70, 70 and 100.
+  if (count == kWhole) {
+    const float qxx = txx - 2 * t, qyy = tyy - 2 * t;
+    curvature = -2 * (qxx + qyy) / 70;
+    squares -= (qxx * qxx + qyy * qyy) / 70 + txy * txy / 100, freedom -= 3;
+  }
+  const float mid = std::clamp(own + plane, 0.f, 1.f);
+  const float ray_variance = (fine * kFineVariance + (count - fine) * kProbeVariance) / count;
+  const float variance = ray_variance * std::min(kTaper * std::min(mid, 1 - mid), 1.f) + kLeastVariance;
+  const float curved = std::clamp((curvature * curvature / variance - kFlat) / (kCurved - kFlat), 0.f, 1.f);
+  const float fit = std::clamp(own + plane + curved * curvature, 0.f, 1.f);
+  const float residual = std::max(squares, 0.f) / freedom;
+  const float gentle = std::max(1 - (b * b + c * c) / (input.level[centre] == 0 ? kSteep : kSteepP), 0.f), allowed = kAllowed * gentle * gentle * variance;
+  const float keep = residual < allowed ? 0 : residual < 2 * allowed ? residual / allowed - 1 : 1.f;
+  return fit + keep * (own - fit);
+}
+
+void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std::uint8_t> level, const RootTile& tile,
+            std::span<float> out) {
+  const SmoothInput input{g, signal, level};
+  const Uniform uniform(input, tile);
+  constexpr int kRun = static_cast<int>(kLanes);
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; x += kRun) {
+      const int count = std::min(kRun, tile.x1 - x), i = (x - tile.x0) / kBlock, j = (y - tile.y0) / kBlock;
+      const std::size_t at = g.at(x, y);
+      if (uniform(i, j) && uniform(i + 1, j))
+        std::copy_n(signal.begin() + static_cast<std::ptrdiff_t>(at), count, out.begin() + static_cast<std::ptrdiff_t>(at));
+      else
+        for (int k = 0; k < count; ++k) out[at + static_cast<std::size_t>(k)] = smooth_pixel(input, x + k, y);
+    }
+}
+
+}  // namespace sightline

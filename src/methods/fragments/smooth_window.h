@@ -1,0 +1,53 @@
+// The filter of smooth.h at single pixels and at rows of them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "methods/fragments/g_buffer.h"
+
+namespace sightline {
+
+struct SmoothInput {
+  const GBuffer& g;
+  std::span<const float> signal;
+  std::span<const std::uint8_t> level;
+};
+
+namespace smoothing {
+
+inline constexpr int kRadius = 2;
+inline constexpr float kWhole = 25;
+inline constexpr float kSteepP = 0.01f;
+inline constexpr float kAllowed = 1.5f, kSteep = 0.017f;
+/// Pixels from one of the window to the next, by level. Probes of a fragment share their light points, so their errors are alike: the
+/// window has to span some fragments.
+constexpr int step_of(int level) { return level < 2 ? 1 : level < 3 ? 2 : 4; }
+/// Variance of 64 and of 16 stratified rays. A straight border crosses 8 of 8 x 8 strata and 4 of 4 x 4, a quarter each at most; twice
+/// that, since borders are not always straight, nor occluders only one.
+inline constexpr float kFineVariance = 2 * 8 * 0.25f / (64 * 64);
+inline constexpr float kProbeVariance = 2 * 4 * 0.25f / (16 * 16);
+/// Near 0 and 1 a border crosses fewer strata.
+inline constexpr float kTaper = 8;
+/// Steps of a 64th are noise too.
+inline constexpr float kLeastVariance = 0.1f / (64 * 64);
+/// Mean squared distance from the surface fitted, in variances: up to the first it is taken, from the second on the pixel's own value.
+inline constexpr float kPlausible = 0.3f, kImplausible = 0.6f;
+/// Square of what curvature adds at the centre, in variances: up to the first it is noise, from the second on it is not.
+inline constexpr float kFlat = 0.1f, kCurved = 0.3f;
+/// With fewer pixels a plane says nothing.
+inline constexpr float kLeastCount = 10;
+/// What is one surface, as for upsampling.
+inline constexpr float kMinCosine = 0.9f, kMaxPlaneDistance = 0.02f, kMaxSlope = 0.35f;
+/// Keeps the fit regular where all pixels lie on one line.
+inline constexpr float kRidge = 1e-3f;
+
+}  // namespace smoothing
+
+/// Value of pixel (x, y). The definition.
+float smooth_pixel(const SmoothInput& input, int x, int y);
+/// The same within 1e-5 for `count` pixels from (x, y) on; x is a multiple of 16, and all 16 pixels from there are in the rows' padding at
+/// least.
+void smooth_row(const SmoothInput& input, int x, int y, int count, float* out);
+
+}  // namespace sightline
