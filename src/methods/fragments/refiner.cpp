@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "methods/fragments/unshadowed.h"
 
 namespace sightline {
 namespace {
 
-constexpr int kConfirmLevel = 4;
+constexpr int kConfirmLevel = 3;
 constexpr int kExtraLevel = 3;
+// By how much an additional sample may differ from its quadrant's: sampling noise where the light is partly seen, little where it is all
+// or nothing.
+constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
 
 struct Pixels {
   int x0, y0, x1, y1;
@@ -39,7 +43,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
     for (int c = 0; c < signal.channels; ++c)
       std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
   }
-  finest_.clear(), extras_.clear();
+  finest_.clear();
   children_.assign(fragments.begin(), fragments.end());
   while (!children_.empty()) {
     // What the light cannot reach is done; pixels wait for the end.
@@ -60,16 +64,18 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
     probes_.test(g, current_, masks_, statistics);
     counts_.test_rays += statistics.rays.occlusion - before;
     stable_.clear(), stable_masks_.clear();
-    classify(g, signal);
-    confirm(g, signal, statistics);
+    classify();
+    confirm(g, statistics);
+    write_stable(g, signal);
+    add_extras(g, sample, signal, statistics);
+    counts_.fragments += stable_.size();
   }
   write_pixels(g, sample, signal, statistics);
-  if (options_.extra_samples) add_extras(g, sample, signal, statistics);
 }
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
 
-void Refiner::classify(const GBuffer&, LightSignal&) {
+void Refiner::classify() {
   for (std::size_t i = 0; i < current_.size(); ++i) {
     const bool dark = options_.dark_culling && most_visible(masks_[i]) == 0;
     if (dark || is_stable(current_[i].level, masks_[i], options_.split))
@@ -80,7 +86,7 @@ void Refiner::classify(const GBuffer&, LightSignal&) {
 }
 
 // Stable fragments are written, large ones once more probes at random places agree: what lies between the four would be missed.
-void Refiner::confirm(const GBuffer& g, LightSignal& signal, PassStatistics& statistics) {
+void Refiner::confirm(const GBuffer& g, PassStatistics& statistics) {
   for (int round = 0; round < options_.confirm; ++round) {
     unconfirmed_.clear();
     for (const Fragment& f : stable_) {
@@ -104,19 +110,22 @@ void Refiner::confirm(const GBuffer& g, LightSignal& signal, PassStatistics& sta
     }
     stable_.resize(kept), stable_masks_.resize(kept);
   }
+}
+
+void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
+  extras_.clear(), extra_owner_.clear();
   for (std::size_t i = 0; i < stable_.size(); ++i) {
     const Fragment& f = stable_[i];
-    ++counts_.fragments;
     write_level(g, f, 0, signal);
     if (most_visible(stable_masks_[i]) == 0)
       write_constant(g, f, 0, signal);
     else
       write_stable(g, f, stable_masks_[i], signal);
-    if (options_.extra_samples && f.level >= kExtraLevel) {
-      const int half = f.width() / 2;
-      for (const IVec2 p : {IVec2(f.x, f.y), IVec2(f.x + half, f.y), IVec2(f.x, f.y + half)}) {
-        if (g.inside(p.x, p.y)) extras_.push_back(static_cast<std::uint32_t>(g.at(p.x, p.y)));
-      }
+    if (!options_.extra_samples || f.level < kExtraLevel) continue;
+    const int half = f.width() / 2;
+    for (const IVec2 p : {IVec2(f.x, f.y), IVec2(f.x + half, f.y), IVec2(f.x, f.y + half)}) {
+      if (!g.inside(p.x, p.y)) continue;
+      extras_.push_back(static_cast<std::uint32_t>(g.at(p.x, p.y))), extra_owner_.push_back(static_cast<std::uint32_t>(i));
     }
   }
 }
@@ -224,15 +233,31 @@ void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& 
   }
 }
 
+// Additional samples of the wave's stable fragments. Where one of them contradicts its quadrant, something small lies between the probes.
 void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
+  if (extras_.empty()) return;
   const std::uint64_t before = statistics.rays.occlusion;
   finest_test_.test(g, *light_, extras_, sample, signal.channels, values_, statistics);
   counts_.extra_rays += statistics.rays.occlusion - before, counts_.extra_samples += extras_.size();
+  contradicted_.assign(stable_.size(), 0);
   for (std::size_t i = 0; i < extras_.size(); ++i) {
     signal.flags[extras_[i]] = static_cast<std::uint8_t>(signal.flags[extras_[i]] | LightSignal::kExtra);
     for (int c = 0; c < signal.channels; ++c)
       signal.extra[static_cast<std::size_t>(c)][extras_[i]] = values_[static_cast<std::size_t>(c)][i];
+    // The corners stand at the place of their quadrants' own values.
+    if (options_.confirm == 0 || signal.channels != 1) continue;
+    const float own = signal.value[0][extras_[i]];
+    const float noise = own > 0 && own < 1 ? kPenumbraNoise : kPlainNoise;
+    if (std::fabs(values_[0][i] - own) > noise) contradicted_[extra_owner_[i]] = 1;
   }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < stable_.size(); ++i) {
+    if (contradicted_[i])
+      split(stable_[i], stable_masks_[i]);
+    else
+      stable_[kept++] = stable_[i];
+  }
+  stable_.resize(kept);
 }
 
 }  // namespace sightline

@@ -46,8 +46,9 @@ class Refiner {
   RefinementCounts& counts() { return counts_; }
 
  private:
-  void classify(const GBuffer& g, LightSignal& signal);
-  void confirm(const GBuffer& g, LightSignal& signal, PassStatistics& statistics);
+  void classify();
+  void confirm(const GBuffer& g, PassStatistics& statistics);
+  void write_stable(const GBuffer& g, LightSignal& signal);
   void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void split(const Fragment& f, const ProbeMasks& masks);
   float share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const;
@@ -62,7 +63,8 @@ class Refiner {
   std::vector<Fragment> current_, children_, stable_, unconfirmed_;
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
-  std::vector<std::uint32_t> finest_, extras_;
+  std::vector<std::uint32_t> finest_, extras_, extra_owner_;  ///< an extra sample's fragment: its place in stable_
+  std::vector<std::uint8_t> contradicted_;
   std::array<std::vector<float>, 3> values_;
   RefinementCounts counts_;
 };
