@@ -20,6 +20,10 @@ class Conductor {
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
   Color albedo() const;
   bool is_delta() const { return ggx_.is_smooth(); }
+  const Color& eta() const { return eta_; }
+  const Color& k() const { return k_; }
+  const Color& tint() const { return tint_; }
+  const Ggx& ggx() const { return ggx_; }
 
  private:
   BsdfSample mirror(const Vec3& wo) const;

@@ -24,6 +24,10 @@ class MetallicRoughness {
   Color albedo() const;
   /// A mirror-like metal.
   bool is_delta() const { return ggx_.is_smooth() && is_black(diffuse_); }
+  const Color& f0() const { return f0_; }
+  /// (1 - metallic) base / (1 - mean E).
+  const Color& diffuse() const { return diffuse_; }
+  const Ggx& ggx() const { return ggx_; }
 
  private:
   Color specular_albedo(float cos_theta) const;

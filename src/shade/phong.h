@@ -19,6 +19,8 @@ class Phong {
   DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return diffuse_ + specular_; }
   bool is_delta() const { return false; }
+  const Color& diffuse() const { return diffuse_; }
+  const Color& specular() const { return specular_; }
 
  private:
   Color diffuse_, specular_;

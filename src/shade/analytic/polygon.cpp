@@ -27,8 +27,9 @@ std::vector<Vec3d> clip_to_horizon(std::span<const Vec3d> polygon) {
 
 }  // namespace
 
-double horizon_form_factor(std::span<const Vec3d> local_polygon) {
-  const std::vector<Vec3d> visible = clip_to_horizon(local_polygon);
+double horizon_form_factor(std::span<const Vec3d> local_polygon, const glm::dmat3& transform) {
+  std::vector<Vec3d> visible = clip_to_horizon(local_polygon);
+  for (Vec3d& corner : visible) corner = transform * corner;
   double sum = 0;
   for (std::size_t i = 0; i < visible.size(); ++i) {
     // Angle that the edge subtends, times the cosine between the receiver's normal and that of the plane through edge and receiver.
@@ -39,6 +40,17 @@ double horizon_form_factor(std::span<const Vec3d> local_polygon) {
   }
   const double form_factor = 0.5 * std::numbers::inv_pi * sum;
   return std::isfinite(form_factor) ? std::clamp(form_factor, -1.0, 1.0) : 0.0;
+}
+
+std::vector<Vec3d> local_polygon(std::span<const Vec3> polygon, const Vec3& position, const Frame3& frame) {
+  const Vec3d tangent(frame.tangent), bitangent(frame.bitangent), normal(frame.normal);
+  std::vector<Vec3d> local;
+  local.reserve(polygon.size());
+  for (const Vec3& corner : polygon) {
+    const Vec3d to_corner = Vec3d(corner) - Vec3d(position);
+    local.emplace_back(glm::dot(to_corner, tangent), glm::dot(to_corner, bitangent), glm::dot(to_corner, normal));
+  }
+  return local;
 }
 
 PolygonPlane::PolygonPlane(std::span<const Vec3> polygon) {
@@ -71,15 +83,8 @@ double polygon_irradiance(std::span<const Vec3> polygon, const Vec3& position, c
   const PolygonPlane plane(polygon);
   const double height = glm::dot(Vec3d(position) - Vec3d(plane.centre), Vec3d(plane.normal));
   if (!plane.emits_towards(height, sides)) return 0;
-  const Frame3 frame = frame_from_normal(normal);
-  const Vec3d tangent(frame.tangent), bitangent(frame.bitangent), axis(normal);
-  std::vector<Vec3d> local;
-  local.reserve(polygon.size());
-  for (const Vec3& corner : polygon) {
-    const Vec3d to_corner = Vec3d(corner) - Vec3d(position);
-    local.emplace_back(glm::dot(to_corner, tangent), glm::dot(to_corner, bitangent), glm::dot(to_corner, axis));
-  }
-  return std::max(0.0, height > 0 ? horizon_form_factor(local) : -horizon_form_factor(local));
+  const double form_factor = horizon_form_factor(local_polygon(polygon, position, frame_from_normal(normal)));
+  return std::max(0.0, height > 0 ? form_factor : -form_factor);
 }
 
 std::vector<Vec3> disk_polygon(const Vec3& centre, const Vec3& e1, const Vec3& e2, std::size_t corner_count) {

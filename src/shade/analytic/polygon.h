@@ -21,9 +21,9 @@ enum class EmitterSides { one, two };
 /// millionth of the polygon's reach) and for polygons without area; never negative, never not-a-number.
 double polygon_irradiance(std::span<const Vec3> polygon, const Vec3& position, const Vec3& normal, EmitterSides sides = EmitterSides::one);
 
-/// The same for points [0, count), in vectors; writes padded(count) form factors. Within 1e-5 of the definition, relatively, plus 2e-6 of
-/// what the emitter would give face to face: however far it is, but nearer to a corner than a tenth of the polygon's reach the second part
-/// grows with reach / distance. (Coordinates far larger than distances lose what any float subtraction loses.)
+/// The same for points [0, count), in vectors; writes padded(count) form factors. Within 1e-5 of the definition, relatively, plus 4e-6 of
+/// what the emitter would give face to face, however far it is; ten times that at a hundredth of the polygon's reach from a corner.
+/// (Coordinates far larger than distances lose what any float subtraction loses.)
 void polygon_irradiance(std::span<const Vec3> polygon, const Vec3Batch& position, const Vec3Batch& normal, std::size_t count,
                         float* form_factor, EmitterSides sides = EmitterSides::one);
 

@@ -1,4 +1,5 @@
-// Lambert's polygon formula in vectors: a receiving point a lane, one polygon for all. Included once for each SIMD target.
+// Lambert's polygon formula in vectors: a receiving point a lane, one polygon for all. Included once for each SIMD target, after
+// hwy/foreach_target.h.
 //
 // The formula sums over edges what nearly cancels when the emitter is far away: edges count like size / distance, the result like its
 // square. So the sum is taken apart. With corners u = r + o, o measured from the polygon's centre r, and w = angle / (|u| |v| sin angle) of
@@ -30,7 +31,7 @@ struct PolygonView {
   V3 centre;                               ///< minus the position
 };
 
-/// Rows of a matrix that takes world vectors into coordinates around the receiver, third axis its normal.
+/// Rows of a matrix that takes world vectors into coordinates around the receiver.
 struct Rows3 {
   V3 x, y, z;
 };
@@ -44,13 +45,15 @@ HWY_INLINE V angle_over_sine_minus_one(D d, V x) {
   return hn::Mul(p, x);
 }
 
-/// A corner, or a point where an edge meets the horizon: from the receiver and from the polygon's centre.
+/// A corner, or a point where an edge meets the horizon: from the receiver and from the polygon's centre; height above the horizon, not
+/// scaled.
 struct Corner {
   V3 from_receiver, from_centre;
+  V height;
 };
 
 HWY_INLINE Corner select_corner(M m, const Corner& a, const Corner& b) {
-  return {select3(m, a.from_receiver, b.from_receiver), select3(m, a.from_centre, b.from_centre)};
+  return {select3(m, a.from_receiver, b.from_receiver), select3(m, a.from_centre, b.from_centre), hn::IfThenElse(m, a.height, b.height)};
 }
 
 /// The two sums of the formula.
@@ -96,8 +99,9 @@ class EdgeSum {
   V excess_, sum_;
 };
 
-/// Integral of z / pi over the directions of the polygon, taken through `transform`, with z >= 0; signed as horizon_form_factor().
-HWY_INLINE V polygon_form_factor(D d, const PolygonView& polygon, const Rows3& transform) {
+/// Integral of z / pi over the directions of the polygon above the horizon of `normal`, taken through `transform`; signed as
+/// horizon_form_factor().
+HWY_INLINE V polygon_form_factor(D d, const PolygonView& polygon, const V3& normal, const Rows3& transform) {
   const V one = hn::Set(d, 1.f), zero = hn::Zero(d);
 
   // Everything is scaled so that lengths are about 1, however near or far the polygon is.
@@ -112,35 +116,36 @@ HWY_INLINE V polygon_form_factor(D d, const PolygonView& polygon, const Rows3& t
   // Nearby the corners are measured from the receiver, lest their rounding show up in angles; far away offsets must be exact instead.
   const M far = hn::Gt(distance, hn::Mul(hn::Set(d, 4.f), near));
   const bool any_far = !hn::AllFalse(d, far), any_near = !hn::AllTrue(d, far);
+  const V centre_height = dot3(normal, polygon.centre);
+  const Corner middle = {centre, {zero, zero, zero}, zero};
   const auto corner = [&](std::size_t i) {
-    Corner c = {centre, {zero, zero, zero}};
+    Corner c = middle;
     if (any_far) {
-      c.from_centre = multiply(m, set3(d, polygon.offsets[i]));
+      const V3 offset = set3(d, polygon.offsets[i]);
+      c.from_centre = multiply(m, offset);
       c.from_receiver = add3(centre, c.from_centre);
+      c.height = hn::Add(centre_height, dot3(normal, offset));
     }
     if (any_near) {
-      const V3 u = multiply(m, sub3(set3(d, polygon.corners[i]), polygon.position));
-      c = select_corner(far, c, {u, sub3(u, centre)});
+      const V3 to_corner = sub3(set3(d, polygon.corners[i]), polygon.position), u = multiply(m, to_corner);
+      c = select_corner(far, c, {u, sub3(u, centre), dot3(normal, to_corner)});
     }
     return c;
   };
   EdgeSum edges(d, centre, excess);
-  const Corner middle = {centre, {zero, zero, zero}};
   Corner leave = middle, enter = middle;
   Corner a = corner(polygon.corners.size() - 1);
-  M a_above = hn::Ge(a.from_receiver.z, zero);
+  M a_above = hn::Ge(a.height, zero);
   for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
     const Corner b = corner(i);
-    const M b_above = hn::Ge(b.from_receiver.z, zero);
+    const M b_above = hn::Ge(b.height, zero);
     if (hn::AllTrue(d, hn::And(a_above, b_above))) {
       edges.add(a, b);
     } else if (!hn::AllFalse(d, hn::Or(a_above, b_above))) {
       // Where the edge passes the horizon.
-      const V t = hn::Div(a.from_receiver.z, hn::Sub(a.from_receiver.z, b.from_receiver.z));
+      const V t = hn::Div(a.height, hn::Sub(a.height, b.height));
       const V3 along = scale3(sub3(b.from_centre, a.from_centre), t);
-      Corner crossing = {add3(a.from_receiver, along), add3(a.from_centre, along)};
-      crossing.from_receiver.z = zero;
-      crossing.from_centre.z = hn::Neg(centre.z);
+      const Corner crossing = {add3(a.from_receiver, along), add3(a.from_centre, along), zero};
       leave = select_corner(hn::AndNot(b_above, a_above), crossing, leave);
       enter = select_corner(hn::AndNot(a_above, b_above), crossing, enter);
       const Corner from = select_corner(a_above, a, select_corner(b_above, crossing, middle));

@@ -27,8 +27,8 @@ void PolygonIrradiance(std::span<const Vec3> polygon, const PolygonPlane& plane,
   const std::vector<Vec3> offsets = polygon_offsets(polygon, plane);
   const V3 centre = set3(d, plane.centre), axis = set3(d, plane.normal);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V3 p = load3(d, position, i), to_centre = sub3(centre, p);
-    const V signed_form_factor = polygon_form_factor(d, {polygon, offsets, plane.reach, p, to_centre}, frame_of(d, load3(d, normal, i)));
+    const V3 p = load3(d, position, i), to_centre = sub3(centre, p), n = load3(d, normal, i);
+    const V signed_form_factor = polygon_form_factor(d, {polygon, offsets, plane.reach, p, to_centre}, n, frame_of(d, n));
     hn::StoreU(seen_part(d, signed_form_factor, hn::Neg(dot3(to_centre, axis)), plane.least_height, sides), d, form_factor + i);
   }
 }

@@ -34,7 +34,10 @@ inline constexpr std::array<float, 9> kAngleSeries{0.333333364f,   0.133328436f,
                                                    -0.0116120732f, 0.0282145884f, -0.0199459573f, 0.00825140589f};
 
 /// Integral of z / pi over the directions that a polygon covers with z >= 0, in coordinates around the receiver: positive where its corners
-/// run counter-clockwise as the receiver sees them.
-double horizon_form_factor(std::span<const Vec3d> local_polygon);
+/// run counter-clockwise as the receiver sees them. A `transform` of what is left above the horizon comes before the integral.
+double horizon_form_factor(std::span<const Vec3d> local_polygon, const glm::dmat3& transform = glm::dmat3(1));
+
+/// Corners in the frame's coordinates around `position`.
+std::vector<Vec3d> local_polygon(std::span<const Vec3> polygon, const Vec3& position, const Frame3& frame);
 
 }  // namespace sightline
