@@ -16,12 +16,13 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, bool sample_all, Visibility* visibility)
-    : world_(world), view_(view), seed_(seed), sample_all_(sample_all), sampled_(world, view, light_samples, visibility) {
+CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, Sampling sampling,
+                       Visibility* visibility)
+    : world_(world), view_(view), seed_(seed), sampling_(sampling), sampled_(world, view, light_samples, visibility) {
   for (auto* indices : {&pixel_, &key_, &sample_}) indices->resize(kBatch);
   for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(kBatch);
   inside_.resize(kBatch), plain_.resize(kBatch);
-  bsdf_.resize(kBatch), frame_.resize(kBatch), kind_.resize(kBatch);
+  bsdf_.resize(kBatch), frame_.resize(kBatch), kind_.resize(kBatch), form_.resize(kBatch);
   light_.resize(kBatch);
 }
 
@@ -40,7 +41,7 @@ void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec
     to_sample_.clear();
     for (std::uint32_t i = 0; i < count_; ++i) {
       const bool surface = kind_[i] != PixelKind::background && kind_[i] != PixelKind::dark;
-      if (surface && hits_.hit(i) && (sample_all_ || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
+      if (surface && hits_.hit(i) && (sampling_ == Sampling::all || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
         to_sample_.push_back(i);
     }
     sampled_.shade({&rays_, &hits_, &surfaces_, &bsdf_, &frame_, plain_.data(), key_.data(), sample}, to_sample_, light_, statistics);
@@ -89,7 +90,8 @@ void CameraPass::evaluate_materials() {
     frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
     if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
     bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
-    kind_[i] = kind_of(bsdf_[i]);
+    form_[i] = sampling_ == Sampling::general ? analytic_form(bsdf_[i]) : std::nullopt;
+    kind_[i] = kind_of(bsdf_[i], form_[i]);
   }
 }
 
@@ -134,10 +136,10 @@ void CameraPass::write(std::size_t root, GBuffer& g, Vec3Batch& radiance) {
     g.error[at] = surfaces_.error[i];
     store(g.position, at, position), store(g.geometric_normal, at, side * geometric), store(g.shading_normal, at, side * shading);
     store(g.albedo, at, albedo);
-    if (kind_[i] == PixelKind::diffuse && !plain_[i]) store(g.albedo, at, lambert_albedo(bsdf_[i]));
+    if (kind_[i] == PixelKind::diffuse && !plain_[i]) store(g.albedo, at, bsdf_[i].albedo());
     if (kind_[i] == PixelKind::analytic) {
       g.glossy_index[at] = static_cast<std::uint32_t>(g.glossy[root].size());
-      g.glossy[root].push_back({bsdf_[i], frame_[i], -direction});
+      g.glossy[root].push_back({bsdf_[i], *form_[i], frame_[i], -direction});
     }
   }
 }

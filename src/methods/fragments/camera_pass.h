@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "film/view.h"
@@ -13,8 +14,12 @@ namespace sightline {
 /// Buffers of one thread.
 class CameraPass {
  public:
-  /// `sample_all`: every pixel is lit by sampling, as the reference does it; else only those that cannot be interpolated.
-  CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, bool sample_all, Visibility* visibility);
+  enum class Sampling {
+    all,      ///< every pixel is lit by sampling, as the reference does it
+    glossy,   ///< those with more than Lambert's law
+    general,  ///< only those without an analytic form
+  };
+  CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, Sampling sampling, Visibility* visibility);
 
   /// Traces sample `sample` of the pixels of root tile `index`; writes their part of `g`, and to `radiance` (laid out as `g`) emission and
   /// sampled light.
@@ -31,7 +36,7 @@ class CameraPass {
   const World& world_;
   const View& view_;
   std::uint64_t seed_;
-  bool sample_all_;
+  Sampling sampling_;
   SampledLight sampled_;
 
   std::size_t count_ = 0;
@@ -43,6 +48,7 @@ class CameraPass {
   SurfaceBatch surfaces_;
   std::vector<Bsdf> bsdf_;
   std::vector<Frame3> frame_;
+  std::vector<std::optional<AnalyticBsdf>> form_;
   std::vector<PixelKind> kind_;
   Vec3Batch light_;
   std::vector<std::uint32_t> to_sample_;

@@ -19,18 +19,23 @@ void cut_by_plane(std::span<const Vec3> polygon, const Vec3& point, const Vec3& 
   }
 }
 
+const GlossyPoint& glossy_point(const GBuffer& g, std::uint32_t at) {
+  const auto stride = static_cast<std::uint32_t>(g.stride);
+  return g.glossy_at(static_cast<int>(at % stride), static_cast<int>(at / stride));
+}
+
 }  // namespace
 
 void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& light, std::span<const float* const> signal,
                    Vec3Batch& radiance) {
-  pixels_.clear(), cut_.clear();
+  pixels_.clear(), cut_.clear(), glossy_.clear();
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (std::size_t at = g.at(tile.x0, y); at < g.at(tile.x1, y); ++at) {
       const bool lit = signal.size() == 1 ? signal[0][at] > 0 : true;
       if (!lit || (g.kind[at] != PixelKind::diffuse && g.kind[at] != PixelKind::analytic)) continue;
       const Vec3 normal = load(g.geometric_normal, at);
       const bool cut = signal.size() == 1 && normal != load(g.shading_normal, at) && !light.above(load(g.position, at), normal);
-      (cut ? cut_ : pixels_).push_back(static_cast<std::uint32_t>(at));
+      (cut ? cut_ : g.kind[at] == PixelKind::analytic ? glossy_ : pixels_).push_back(static_cast<std::uint32_t>(at));
     }
   }
   if (signal.size() == 3) {
@@ -39,6 +44,7 @@ void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& ligh
     return;
   }
   add_cut(g, light, signal[0], radiance);
+  add_glossy(g, light, signal[0], radiance);
   const std::size_t n = pixels_.size();
   position_.resize(n), normal_.resize(n), form_factor_.resize(padded(n));
   for (std::size_t i = 0; i < n; ++i) {
@@ -65,9 +71,34 @@ void Composer::add_cut(const GBuffer& g, const AreaLight& light, const float* si
     for (const AreaLight::Member& member : light.members) {
       cut_by_plane(member.polygon, position, normal, polygon_);
       if (polygon_.size() < 3) continue;
+      if (g.kind[at] == PixelKind::analytic) {
+        const GlossyPoint& point = glossy_point(g, at);
+        const AnalyticLobes lobes = analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal));
+        const PolygonReflection reflected = reflect_polygon(polygon_, position, point.frame.normal, point.wo, lobes, member.sides);
+        sightline::add(radiance, at, (reflected.diffuse + reflected.specular) * member.radiance * signal[at]);
+        continue;
+      }
       const auto form_factor = static_cast<float>(polygon_irradiance(polygon_, position, load(g.shading_normal, at), member.sides));
       sightline::add(radiance, at, load(g.albedo, at) * member.radiance * (signal[at] * form_factor));
     }
+  }
+}
+
+// The visible share of a glossy pixel weighs light points by all that they contribute there: it goes with the sum of both lobes.
+void Composer::add_glossy(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance) {
+  const std::size_t n = glossy_.size();
+  if (n == 0) return;
+  position_.resize(n), normal_.resize(n), wo_.resize(n), diffuse_.resize(n), specular_.resize(n), lobes_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const GlossyPoint& point = glossy_point(g, glossy_[i]);
+    store(position_, i, load(g.position, glossy_[i]));
+    store(normal_, i, point.frame.normal), store(wo_, i, point.wo);
+    lobes_.set(i, analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal)));
+  }
+  for (const AreaLight::Member& member : light.members) {
+    reflect_polygon(member.polygon, {position_, normal_, wo_, lobes_}, n, diffuse_, specular_, member.sides);
+    for (std::size_t i = 0; i < n; ++i)
+      sightline::add(radiance, glossy_[i], (load(diffuse_, i) + load(specular_, i)) * member.radiance * signal[glossy_[i]]);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "methods/fragments/area_light.h"
 #include "methods/fragments/g_buffer.h"
+#include "shade/analytic/reflection.h"
 
 namespace sightline {
 
@@ -20,10 +21,14 @@ class Composer {
  private:
   void add_cut(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance);
 
-  std::vector<std::uint32_t> pixels_, cut_;
+  void add_glossy(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance);
+  std::vector<std::uint32_t> pixels_, cut_, glossy_;
   std::vector<Vec3> polygon_;
   Vec3Batch position_, normal_;
   AlignedVector<float> form_factor_;
+  // Of glossy pixels.
+  Vec3Batch wo_, diffuse_, specular_;
+  AnalyticLobesBatch lobes_;
 };
 
 }  // namespace sightline

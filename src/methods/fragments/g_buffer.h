@@ -8,6 +8,7 @@
 #include "base/core/aligned.h"
 #include "base/math/frame.h"
 #include "base/math/vec.h"
+#include "shade/analytic/analytic_bsdf.h"
 #include "shade/bsdf.h"
 
 namespace sightline {
@@ -34,6 +35,7 @@ enum class PixelKind : std::uint8_t {
 /// A shading point with more to it than Lambert's law.
 struct GlossyPoint {
   Bsdf bsdf;
+  AnalyticBsdf form;
   Frame3 frame;
   Vec3 wo{0};  ///< unit, towards the camera
 };

@@ -7,6 +7,7 @@
 
 #include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
+#include "methods/fragments/smooth.h"
 #include "methods/fragments/upsample.h"
 
 namespace sightline {
@@ -50,12 +51,15 @@ void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, B
 }
 
 void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics& statistics) {
-  const bool all = options_.refine == FragmentOptions::Refine::all;
+  const bool analytic = options_.ratio && std::ranges::all_of(lights_, [](const AreaLight& light) { return light.analytic; });
+  const CameraPass::Sampling sampling = options_.refine == FragmentOptions::Refine::all ? CameraPass::Sampling::all
+                                        : analytic                                      ? CameraPass::Sampling::general
+                                                                                        : CameraPass::Sampling::glossy;
   for_roots("primary rays", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
     std::unique_ptr<CameraPass>& camera = cameras_[thread];
     if (!camera)
-      camera =
-          std::make_unique<CameraPass>(*job_.world, view_, context_.seed, static_cast<int>(options_.finest.rays), all, job_.visibility);
+      camera = std::make_unique<CameraPass>(*job_.world, view_, context_.seed, static_cast<int>(options_.finest.rays), sampling,
+                                            job_.visibility);
     camera->render(root, sample, g_, radiance_, local);
   });
   if (!lights_.empty()) {
@@ -106,8 +110,14 @@ void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& sta
         std::copy_n(out[c] + (y - tile.y0) * kRootSize, tile.x1 - tile.x0, pixels_[c].data() + g_.at(tile.x0, y));
     }
   });
+  const bool smoothed = options_.smooth && channels == 1;
+  if (smoothed) {
+    smoothed_.resize(g_.kind.size());
+    for_roots("smoothing", statistics,
+              [&](std::size_t root, std::size_t, PassStatistics&) { smooth(g_, pixels_[0], signal_.level, g_.root(root), smoothed_); });
+  }
   for_roots("shading", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
-    const std::array<const float*, 3> signal = {pixels_[0].data(), pixels_[1].data(), pixels_[2].data()};
+    const std::array<const float*, 3> signal = {smoothed ? smoothed_.data() : pixels_[0].data(), pixels_[1].data(), pixels_[2].data()};
     composers_[thread].add(g_, g_.root(root), light, std::span<const float* const>(signal.data(), channels), radiance_);
   });
 }

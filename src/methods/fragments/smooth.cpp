@@ -105,8 +105,9 @@ float smooth_pixel(const SmoothInput& input, int x, int y) {
   const float curved = std::clamp((curvature * curvature / variance - kFlat) / (kCurved - kFlat), 0.f, 1.f);
   const float fit = std::clamp(own + plane + curved * curvature, 0.f, 1.f);
   const float residual = std::max(squares, 0.f) / freedom;
-  const float gentle = std::max(1 - (b * b + c * c) / (input.level[centre] == 0 ? kSteep : kSteepP), 0.f), allowed = kAllowed * gentle * gentle * variance;
-  const float keep = residual < allowed ? 0 : residual < 2 * allowed ? residual / allowed - 1 : 1.f;
+  const float gentle = std::max(1 - (b * b + c * c) / steep_of(input.level[centre]), 0.f);
+  const float allowed = kAllowed * gentle * gentle * variance;
+  const float keep = std::clamp(residual / std::max(allowed, 1e-20f) - 1, 0.f, 1.f);
   return fit + keep * (own - fit);
 }
 
@@ -122,7 +123,7 @@ void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std
       if (uniform(i, j) && uniform(i + 1, j))
         std::copy_n(signal.begin() + static_cast<std::ptrdiff_t>(at), count, out.begin() + static_cast<std::ptrdiff_t>(at));
       else
-        for (int k = 0; k < count; ++k) out[at + static_cast<std::size_t>(k)] = smooth_pixel(input, x + k, y);
+        smooth_row(input, x, y, count, out.data() + at);
     }
 }
 

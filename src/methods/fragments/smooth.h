@@ -10,11 +10,11 @@ namespace sightline {
 
 /// Writes the pixels of `tile` to `out` (laid out as the GBuffer, as are `signal` and `level`); reads up to kSmoothReach pixels around it.
 ///
-/// `signal` is the visible share of a light, `level` that of the fragment a pixel's value comes from, which says how noisy it is. In a
-/// window of 5 x 5 pixels on the same surface a plane is fitted to the values. Where their distance from the plane is explained by the
-/// noise of stratified shadow rays, a pixel takes the plane's value; where it is not, there is something to be seen, and the pixel keeps
-/// its own. So linear penumbrae of any width pass unchanged, and sharp shadow borders do. Coarser fragments have noise in common among
-/// their pixels: the window's pixels lie further apart.
+/// `signal` is the visible share of a light, `level` that of the fragment a pixel's value comes from, which says how noisy it is. A plane
+/// is fitted to the values of a window of 5 x 5 pixels on the same surface, or a parabola where that is significant. Where the noise of
+/// stratified shadow rays explains how far values lie from the fit, a pixel takes the fit's value; where it does not, there is something
+/// to be seen, and the pixel keeps its own. So wide penumbrae lose their noise and nothing else, and narrow ones stay as they are. In
+/// coarser fragments, whose pixels have their noise in common, the window's pixels lie further apart.
 ///
 /// The bits of a pixel do not depend on the tile it is computed with.
 void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std::uint8_t> level, const RootTile& tile,

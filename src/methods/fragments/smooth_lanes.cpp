@@ -58,58 +58,90 @@ HWY_INLINE M receives(D d, const Reader& reader, const GBuffer& g) {
                                   hn::Eq(kind, hn::Set(di, static_cast<std::int32_t>(PixelKind::analytic)))));
 }
 
-// smooth_pixel() for lanes of one step.
-HWY_INLINE V smooth_lanes(D d, const SmoothInput& input, int x, int y, int step, V own, const V3& position, const V3& normal,
-                          const V3& shading_normal, V limit) {
+/// What lanes know of their own pixel.
+struct Centre {
+  V own;
+  V3 position, normal, shading_normal;
+  V limit;  // squared distance from the tangent plane
+};
+
+/// Moments of the window, as in smooth_pixel().
+struct Moments {
+  V count, fine, sx, sy, sxx, sxy, syy, t, tx, ty, txx, txy, tyy, tt;
+};
+
+HWY_INLINE Moments gather(D d, const SmoothInput& input, int x, int y, int step, const Centre& centre) {
   const DI di;
   const GBuffer& g = input.g;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.f);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.f), ridge = hn::Set(d, kRidge);
+  Moments m = {zero, zero, zero, zero, ridge, zero, ridge, zero, zero, zero, zero, zero, zero, zero};
   const I column = hn::Add(hn::Iota(di, 0), hn::Set(di, x));
-  V count = zero, s = zero, sx = zero, sy = zero, sxx = hn::Set(d, kRidge), sxy = zero, syy = sxx;
-  V t = zero, tx = zero, ty = zero, tt = zero;
   for (int j = -kRadius; j <= kRadius; ++j) {
     const int py = y + j * step;
     if (py < 0 || py >= g.height) continue;
+    const V fy = hn::Set(d, static_cast<float>(j));
     for (int i = -kRadius; i <= kRadius; ++i) {
       const Reader reader(g, x + i * step, py);
       const I px = hn::Add(column, hn::Set(di, i * step));
-      const V3 delta = sub3(reader.vectors(g.position), position);
-      const V distance = dot3(delta, normal), squared = hn::Mul(distance, distance);
-      M counts = hn::And(hn::Le(squared, limit), hn::Le(squared, hn::Mul(hn::Set(d, kMaxSlope * kMaxSlope), dot3(delta, delta))));
-      counts = hn::And(counts, hn::Ge(dot3(shading_normal, reader.vectors(g.shading_normal)), hn::Set(d, kMinCosine)));
+      const V3 delta = sub3(reader.vectors(g.position), centre.position);
+      const V distance = dot3(delta, centre.normal), squared = hn::Mul(distance, distance);
+      M counts = hn::And(hn::Le(squared, centre.limit), hn::Le(squared, hn::Mul(hn::Set(d, kMaxSlope * kMaxSlope), dot3(delta, delta))));
+      counts = hn::And(counts, hn::Ge(dot3(centre.shading_normal, reader.vectors(g.shading_normal)), hn::Set(d, kMinCosine)));
       counts = hn::And(counts, receives(d, reader, g));
       counts = hn::And(counts, hn::RebindMask(d, hn::And(hn::Gt(px, hn::Set(di, -1)), hn::Lt(px, hn::Set(di, g.width)))));
-      const M fine = hn::RebindMask(d, hn::Eq(reader.bytes(input.level.data()), hn::Zero(di)));
-      const V w = hn::IfThenElseZero(counts, hn::IfThenElse(fine, one, hn::Set(d, kWeightOfProbes)));
-      const V v = hn::IfThenElseZero(counts, hn::Sub(reader.floats(input.signal.data()), own)), wv = hn::Mul(w, v);
-      const V fx = hn::Set(d, static_cast<float>(i)), fy = hn::Set(d, static_cast<float>(j)), wx = hn::Mul(w, fx), wy = hn::Mul(w, fy);
-      count = hn::Add(count, hn::IfThenElseZero(counts, one));
-      s = hn::Add(s, w), sx = hn::Add(sx, wx), sy = hn::Add(sy, wy);
-      sxx = hn::MulAdd(wx, fx, sxx), sxy = hn::MulAdd(wx, fy, sxy), syy = hn::MulAdd(wy, fy, syy);
-      t = hn::Add(t, wv), tx = hn::MulAdd(wv, fx, tx), ty = hn::MulAdd(wv, fy, ty), tt = hn::MulAdd(wv, v, tt);
+      const M fine = hn::And(counts, hn::RebindMask(d, hn::Eq(reader.bytes(input.level.data()), hn::Zero(di))));
+      const V w = hn::IfThenElseZero(counts, one), fx = hn::Set(d, static_cast<float>(i)), wx = hn::Mul(w, fx), wy = hn::Mul(w, fy);
+      const V v = hn::IfThenElseZero(counts, hn::Sub(reader.floats(input.signal.data()), centre.own));
+      const V vx = hn::Mul(v, fx), vy = hn::Mul(v, fy);
+      m.count = hn::Add(m.count, w), m.fine = hn::Add(m.fine, hn::IfThenElseZero(fine, one));
+      m.sx = hn::Add(m.sx, wx), m.sy = hn::Add(m.sy, wy);
+      m.sxx = hn::MulAdd(wx, fx, m.sxx), m.sxy = hn::MulAdd(wx, fy, m.sxy), m.syy = hn::MulAdd(wy, fy, m.syy);
+      m.t = hn::Add(m.t, v), m.tx = hn::Add(m.tx, vx), m.ty = hn::Add(m.ty, vy);
+      m.txx = hn::MulAdd(vx, fx, m.txx), m.txy = hn::MulAdd(vx, fy, m.txy), m.tyy = hn::MulAdd(vy, fy, m.tyy);
+      m.tt = hn::MulAdd(v, v, m.tt);
     }
   }
-  const M enough = hn::Ge(count, hn::Set(d, kLeastCount));
-  if (hn::AllFalse(d, enough)) return own;
+  return m;
+}
 
-  const V per_s = hn::Div(one, hn::IfThenElse(enough, s, one)), mx = hn::Mul(sx, per_s), my = hn::Mul(sy, per_s), mean = hn::Mul(t, per_s);
-  const V vxx = hn::NegMulAdd(sx, mx, sxx), vxy = hn::NegMulAdd(sx, my, sxy), vyy = hn::NegMulAdd(sy, my, syy);
-  const V ux = hn::NegMulAdd(t, mx, tx), uy = hn::NegMulAdd(t, my, ty);
+HWY_INLINE V clamp01(D d, V v) { return hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, 1.f)); }
+
+// The value of lanes from their moments, step by step as in smooth_pixel().
+HWY_INLINE V fitted(D d, const Moments& m, V own, float steep) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.f), two = hn::Set(d, 2.f);
+  const M enough = hn::Ge(m.count, hn::Set(d, kLeastCount));
+  if (hn::AllFalse(d, enough)) return own;
+  const V n = hn::IfThenElse(enough, m.count, hn::Set(d, kLeastCount)), per_n = hn::Div(one, n);
+  const V mx = hn::Mul(m.sx, per_n), my = hn::Mul(m.sy, per_n), mean = hn::Mul(m.t, per_n);
+  const V vxx = hn::NegMulAdd(m.sx, mx, m.sxx), vxy = hn::NegMulAdd(m.sx, my, m.sxy), vyy = hn::NegMulAdd(m.sy, my, m.syy);
+  const V ux = hn::NegMulAdd(m.t, mx, m.tx), uy = hn::NegMulAdd(m.t, my, m.ty);
   const V determinant = hn::NegMulAdd(vxy, vxy, hn::Mul(vxx, vyy));
   const V per_determinant = hn::Div(one, hn::Max(determinant, hn::Set(d, 1e-12f)));
   const V b = hn::Mul(hn::NegMulAdd(vxy, uy, hn::Mul(vyy, ux)), per_determinant);
   const V c = hn::Mul(hn::NegMulAdd(vxy, ux, hn::Mul(vxx, uy)), per_determinant);
-  const V offset = hn::NegMulAdd(c, my, hn::NegMulAdd(b, mx, mean));
-  const V fit = hn::Min(hn::Max(hn::Add(own, offset), zero), one);
-  const V squares = hn::NegMulAdd(c, uy, hn::NegMulAdd(b, ux, hn::NegMulAdd(t, mean, tt)));
-  const V freedom = hn::IfThenElse(enough, hn::Sub(count, hn::Set(d, 3.f)), one);
-  const V residual = hn::Div(hn::Max(squares, zero), freedom);
+  const V plane = hn::NegMulAdd(c, my, hn::NegMulAdd(b, mx, mean));
+  V squares = hn::NegMulAdd(c, uy, hn::NegMulAdd(b, ux, hn::NegMulAdd(m.t, mean, m.tt)));
 
-  const V taper = hn::Min(hn::Mul(hn::Set(d, kTaper), hn::Min(fit, hn::Sub(one, fit))), one);
-  const V variance = hn::MulAdd(hn::Set(d, kVariance), taper, hn::Set(d, kLeastVariance));
-  const V ratio =
-      hn::Div(hn::NegMulAdd(hn::Set(d, kPlausible), variance, residual), hn::Mul(variance, hn::Set(d, kImplausible - kPlausible)));
-  const V keep = hn::Min(hn::Max(ratio, zero), one);
+  const M whole = hn::Eq(m.count, hn::Set(d, kWhole));
+  const V qxx = hn::NegMulAdd(two, m.t, m.txx), qyy = hn::NegMulAdd(two, m.t, m.tyy);
+  const V curvature = hn::IfThenElseZero(whole, hn::Mul(hn::Set(d, -2.f / 70), hn::Add(qxx, qyy)));
+  const V bent =
+      hn::MulAdd(hn::MulAdd(qxx, qxx, hn::Mul(qyy, qyy)), hn::Set(d, 1.f / 70), hn::Mul(hn::Mul(m.txy, m.txy), hn::Set(d, 1.f / 100)));
+  squares = hn::Sub(squares, hn::IfThenElseZero(whole, bent));
+  const V freedom = hn::Sub(n, hn::IfThenElse(whole, hn::Set(d, 6.f), hn::Set(d, 3.f)));
+
+  const V mid = clamp01(d, hn::Add(own, plane));
+  const V rays = hn::Mul(hn::MulAdd(m.fine, hn::Set(d, kFineVariance), hn::Mul(hn::Sub(n, m.fine), hn::Set(d, kProbeVariance))), per_n);
+  const V taper = hn::Min(hn::Mul(hn::Set(d, kTaper), hn::Min(mid, hn::Sub(one, mid))), one);
+  const V variance = hn::MulAdd(rays, taper, hn::Set(d, kLeastVariance));
+  const V excess = hn::Sub(hn::Div(hn::Mul(curvature, curvature), variance), hn::Set(d, kFlat));
+  const V curved = clamp01(d, hn::Mul(excess, hn::Set(d, 1 / (kCurved - kFlat))));
+  const V fit = clamp01(d, hn::Add(own, hn::MulAdd(curved, curvature, plane)));
+  const V residual = hn::Div(hn::Max(squares, zero), freedom);
+  const V slope = hn::MulAdd(b, b, hn::Mul(c, c));
+  const V gentle = hn::Max(hn::NegMulAdd(slope, hn::Set(d, 1 / steep), one), zero);
+  const V allowed = hn::Mul(hn::Mul(hn::Mul(hn::Set(d, kAllowed), gentle), gentle), variance);
+  const V keep = clamp01(d, hn::Sub(hn::Div(residual, hn::Max(allowed, hn::Set(d, 1e-20f))), one));
   return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(own, fit), fit), own);
 }
 
@@ -120,17 +152,17 @@ void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
   const int n = static_cast<int>(hn::Lanes(d));
   for (int k = 0; k < count; k += n) {
     const Reader reader(g, x + k, y);
-    const V own = reader.floats(input.signal.data());
-    const V3 position = reader.vectors(g.position), normal = reader.vectors(g.geometric_normal);
-    const V3 shading_normal = reader.vectors(g.shading_normal);
-    const V reach = hn::Mul(hn::Set(d, kMaxPlaneDistance), reader.floats(g.depth.data())), limit = hn::Mul(reach, reach);
+    const V reach = hn::Mul(hn::Set(d, kMaxPlaneDistance), reader.floats(g.depth.data()));
+    const Centre centre = {reader.floats(input.signal.data()), reader.vectors(g.position), reader.vectors(g.geometric_normal),
+                           reader.vectors(g.shading_normal), hn::Mul(reach, reach)};
     const M active = receives(d, reader, g);
     const I level = hn::Min(reader.bytes(input.level.data()), hn::Set(di, 3));
-    V result = own;
+    V result = centre.own;
     for (int m = 0; m <= 3; ++m) {
       const M lanes = hn::And(active, hn::RebindMask(d, hn::Eq(level, hn::Set(di, m))));
       if (hn::AllFalse(d, lanes)) continue;
-      result = hn::IfThenElse(lanes, smooth_lanes(d, input, x + k, y, step_of(m), own, position, normal, shading_normal, limit), result);
+      const Moments moments = gather(d, input, x + k, y, step_of(m), centre);
+      result = hn::IfThenElse(lanes, fitted(d, moments, centre.own, steep_of(m)), result);
     }
     if (k + n <= count) {
       hn::StoreU(result, d, out + k);

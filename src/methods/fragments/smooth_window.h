@@ -17,12 +17,10 @@ struct SmoothInput {
 namespace smoothing {
 
 inline constexpr int kRadius = 2;
-inline constexpr float kWhole = 25;
-inline constexpr float kSteepP = 0.01f;
-inline constexpr float kAllowed = 1.5f, kSteep = 0.017f;
+inline constexpr float kWhole = 25;  ///< pixels of a whole window
 /// Pixels from one of the window to the next, by level. Probes of a fragment share their light points, so their errors are alike: the
 /// window has to span some fragments.
-constexpr int step_of(int level) { return level < 2 ? 1 : level < 3 ? 2 : 4; }
+constexpr int step_of(int level) { return level < 2 ? 1 : level == 2 ? 2 : 4; }
 /// Variance of 64 and of 16 stratified rays. A straight border crosses 8 of 8 x 8 strata and 4 of 4 x 4, a quarter each at most; twice
 /// that, since borders are not always straight, nor occluders only one.
 inline constexpr float kFineVariance = 2 * 8 * 0.25f / (64 * 64);
@@ -31,10 +29,13 @@ inline constexpr float kProbeVariance = 2 * 4 * 0.25f / (16 * 16);
 inline constexpr float kTaper = 8;
 /// Steps of a 64th are noise too.
 inline constexpr float kLeastVariance = 0.1f / (64 * 64);
-/// Mean squared distance from the surface fitted, in variances: up to the first it is taken, from the second on the pixel's own value.
-inline constexpr float kPlausible = 0.3f, kImplausible = 0.6f;
 /// Square of what curvature adds at the centre, in variances: up to the first it is noise, from the second on it is not.
 inline constexpr float kFlat = 0.1f, kCurved = 0.3f;
+/// Mean squared distance from the fit, in variances, up to which noise explains it; beyond twice that the pixel keeps its value.
+inline constexpr float kAllowed = 1.5f;
+/// Squared slope from one pixel of the window to the next at which nothing is allowed any more: a steep penumbra is narrow, so that its
+/// ends are in the window, and the error of missing them grows with the slope. (Penumbrae of 4 pixels must not get worse.)
+constexpr float steep_of(int level) { return level == 0 ? 0.014f : 0.016f; }
 /// With fewer pixels a plane says nothing.
 inline constexpr float kLeastCount = 10;
 /// What is one surface, as for upsampling.
