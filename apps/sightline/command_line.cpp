@@ -134,6 +134,8 @@ void add_render_method(CLI::App& app, RenderCommand& r) {
       ->check(CLI::IsMember({"embree", "brute"}))
       ->group(group)
       ->capture_default_str();
+  app.add_flag("--smooth-terminator", r.smooth_terminator, "shade coarse meshes as the curved surface that their normals suggest")
+      ->group(group);
 }
 
 void add_render_limits(CLI::App& app, RenderCommand& r) {

@@ -31,6 +31,7 @@ struct RenderCommand {
   std::optional<std::string> frames;
   float fps = 24;
   bool seed_per_frame = false, skip_existing = false;
+  bool smooth_terminator = false;
   std::uint64_t seed = 0;
   std::optional<double> memory_limit_gib;
   std::string command_line;  ///< as typed, for the EXR header

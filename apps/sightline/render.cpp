@@ -114,6 +114,7 @@ StopReason render_frame(const Sequence& sequence, int frame_number, const Stopwa
   Scene scene = pose(sequence.loaded, static_cast<float>(frame_number) / command.fps);
   WorldOptions options;
   if (command.tracer == "brute") options.backend = WorldOptions::Backend::brute;
+  options.shadow_terminator = command.smooth_terminator;
   const IVec2 size = choose_size(scene, command.view);
   const RenderRequest request = frame_request(command, frame_number, sequence.one_frame);
   options.tracer.reserved_bytes = picture_needs(size, request, false, context).total();

@@ -43,6 +43,7 @@ FrameIdentity frame_identity(const World& world, const View& view, const RenderR
       scene_hash(world.scene()), result.frame.width(), result.frame.height(), pixel_filter_name(view.filter().kind()), seed,
       simd_target_name(), result.method, result.visibility, result.light_samples, result.max_bounces, result.spp == 1);
   for (const auto& [name, value] : result.settings) text += fmt::format("; {}={}", name, value);
+  if (world.shadow_terminator()) text += "; smooth terminator";
   if (multiple > 1) text += fmt::format("; samples in groups of {}", multiple);
   text += "; camera";
   for (int column = 0; column < 4; ++column) {

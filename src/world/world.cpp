@@ -78,6 +78,7 @@ const Tracer& World::tracer() const { return *impl_->tracer; }
 const TextureSet& World::textures() const { return *impl_->textures; }
 const LightTable& World::lights() const { return *impl_->lights; }
 Bounds World::bounds() const { return impl_->tracer->bounds(); }
+bool World::shadow_terminator() const { return impl_->options.shadow_terminator; }
 std::uint64_t World::acceleration_bytes() const { return impl_->tracer->memory().acceleration_bytes; }
 
 void World::surfaces(const RayBatch& rays, const HitBatch& hits, SurfaceBatch& surfaces) const {

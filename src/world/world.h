@@ -16,8 +16,9 @@ namespace sightline {
 struct WorldOptions {
   enum class Backend { embree, brute } backend = Backend::embree;
   TracerOptions tracer;
-  /// Fills SurfaceBatch::shadow_offset. Off by default: the offset trades the facets' true shadows for smooth ones, and the reference shows
-  /// the scene as it is.
+  /// Fills SurfaceBatch::shadow_offset, with which methods shade coarse meshes as the curved surface that their normals suggest
+  /// (methods/shadow_terminator.h). Off by default: it trades the facets' true shadows for smooth ones, and pictures show the scene as it
+  /// is.
   bool shadow_terminator = false;
 };
 
@@ -37,6 +38,7 @@ class World {
   const TextureSet& textures() const;
   const LightTable& lights() const;
   Bounds bounds() const;
+  bool shadow_terminator() const;
   std::uint64_t acceleration_bytes() const;
 
   /// Positions, normals, error bounds and materials of hits. `spread` (may be empty) is the width of each ray's cone at its origin and

@@ -170,6 +170,7 @@ class Slices(ProgramTest):
         self.fails(2, "render", "builtin:cornell", "--size", "32x25", *small, says=("c: ", "another picture"))
         self.fails(2, "render", "builtin:furnace", "--size", "32x24", *small, says="another picture")
         self.fails(2, "render", "builtin:cornell", "--size", "32x24", "--seed", "4", *small, says="another picture")
+        self.fails(2, "render", "builtin:cornell", "--size", "32x24", "--smooth-terminator", *small, says="another picture")
         self.fails(2, "render", "builtin:cornell", "--size", "32x24", "--aov", "depth", *small, says="layers")
         (self.folder / "c").write_bytes(b"SLFRAME1 but not really one, only as long as it must be.....")
         self.fails(3, "render", "builtin:cornell", "--size", "32x24", *small, says="c: ")

@@ -31,7 +31,7 @@ class Usage(ProgramTest):
                          --environment-rotate --environment-mapping --light-area --light-point --light-directional --spp --light-samples
                          --max-bounces --seed --threads --frame --frames --fps --target-error --sample-range --skip-existing --time-limit
                          --memory-limit --checkpoint --resume --aov --exposure --tonemap --filter --simd --stats --progress --verbose
-                         --quiet --log-level""".split():
+                         --quiet --log-level --smooth-terminator""".split():
             self.assertIn(option, text)
 
     def test_wrong_usage_is_2_with_one_line(self):
