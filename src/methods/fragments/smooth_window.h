@@ -28,14 +28,14 @@ inline constexpr float kProbeVariance = 2 * 4 * 0.25f / (16 * 16);
 /// Near 0 and 1 a border crosses fewer strata.
 inline constexpr float kTaper = 8;
 /// Steps of a 64th are noise too.
-inline constexpr float kLeastVariance = 0.1f / (64 * 64);
+inline constexpr float kLeastVariance = 0.03f / (64 * 64);
 /// Square of what curvature adds at the centre, in variances: up to the first it is noise, from the second on it is not.
 inline constexpr float kFlat = 0.1f, kCurved = 0.3f;
 /// Mean squared distance from the fit, in variances, up to which noise explains it; beyond twice that the pixel keeps its value.
 inline constexpr float kAllowed = 1.5f;
 /// Squared slope from one pixel of the window to the next at which nothing is allowed any more: a steep penumbra is narrow, so that its
 /// ends are in the window, and the error of missing them grows with the slope. (Penumbrae of 4 pixels must not get worse.)
-constexpr float steep_of(int level) { return level == 0 ? 0.014f : 0.016f; }
+constexpr float steep_of(int level) { return level == 0 ? 0.017f : 0.016f; }
 /// With fewer pixels a plane says nothing.
 inline constexpr float kLeastCount = 10;
 /// What is one surface, as for upsampling.
