@@ -37,6 +37,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   probes_.begin(static_cast<std::uint32_t>(index));
   finest_test_.begin(static_cast<std::uint32_t>(index));
   const RootTile tile = g.root(index);
+  reach_.build(g, tile, *light_);
   for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) {
     std::fill_n(signal.level.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{0});
     std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});
@@ -48,9 +49,13 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   while (!children_.empty()) {
     // What the light cannot reach is done; pixels wait for the end.
     current_.clear();
-    for (const Fragment& f : children_) {
+    for (std::size_t i = 0; i < children_.size(); ++i) {
+      const Fragment f = children_[i];
       if (f.x >= g.width || f.y >= g.height) continue;
-      if (out_of_reach(g, f)) {
+      const ReachPyramid::Reach reach = reach_.of(f);
+      if (reach == ReachPyramid::Reach::mixed) {
+        subdivide(f, 0, children_);
+      } else if (reach == ReachPyramid::Reach::none) {
         write_level(g, f, LightSignal::kUnlit, signal), write_constant(g, f, 0, signal);
         ++counts_.fragments;
       } else if (f.level == 0) {

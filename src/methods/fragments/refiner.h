@@ -13,6 +13,7 @@
 #include "methods/fragments/light_signal.h"
 #include "methods/fragments/options.h"
 #include "methods/fragments/probe_test.h"
+#include "methods/fragments/reach.h"
 #include "methods/fragments/unshadowed.h"
 
 namespace sightline {
@@ -60,6 +61,7 @@ class Refiner {
   const AreaLight* light_ = nullptr;
   const LightPoints* points_ = nullptr;
 
+  ReachPyramid reach_;
   std::vector<Fragment> current_, children_, stable_, unconfirmed_;
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
