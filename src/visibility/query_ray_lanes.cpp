@@ -32,7 +32,26 @@ struct End {
   V error;
 };
 
-// Ends of 16 queries. Runs of queries mostly share one end, or go through the ends in order: reading those is much less than gathering.
+/// Elements of arrays at indices that are at most two vectors apart: two loads and permutations cost much less than a gather.
+struct NearPicker {
+  D d;
+  std::size_t at;
+  M upper;
+  decltype(hn::IndicesFromVec(D(), I())) index;
+  HWY_INLINE NearPicker(D df, std::size_t first, I offset)
+      : d(df),
+        at(first),
+        upper(hn::RebindMask(df, hn::Gt(offset, hn::Set(DI(), static_cast<std::int32_t>(hn::Lanes(df)) - 1)))),
+        index(hn::IndicesFromVec(df, hn::And(offset, hn::Set(DI(), static_cast<std::int32_t>(hn::Lanes(df)) - 1)))) {}
+  HWY_INLINE V operator()(const float* array) const {
+    return hn::IfThenElse(upper, hn::TableLookupLanes(hn::LoadU(d, array + at + hn::Lanes(d)), index),
+                          hn::TableLookupLanes(hn::LoadU(d, array + at), index));
+  }
+  HWY_INLINE V3 operator()(const Vec3Batch& b) const { return {(*this)(b.x.data()), (*this)(b.y.data()), (*this)(b.z.data())}; }
+};
+
+// Ends of 16 queries. Runs of queries mostly share one end, or go through the ends in order, with gaps where there is no contribution:
+// reading those is much less than gathering.
 HWY_INLINE End ends_at(D d, const QueryEnds& ends, I index) {
   const DI di;
   const std::int32_t first = hn::GetLane(index);
@@ -43,6 +62,16 @@ HWY_INLINE End ends_at(D d, const QueryEnds& ends, I index) {
   }
   if (hn::AllTrue(di, hn::Eq(index, hn::Add(hn::Iota(di, 0), hn::Set(di, first)))))
     return {load3(d, ends.position, at), load3(d, ends.normal, at), hn::LoadU(d, ends.error.data() + at)};
+  const std::size_t reach = 2 * hn::Lanes(d), readable = padded(ends.size);
+  if (readable >= reach) {
+    const std::size_t from = std::min(at, readable - reach);
+    const I offset = hn::Sub(index, hn::Set(di, static_cast<std::int32_t>(from)));
+    const auto near = hn::And(hn::Gt(offset, hn::Set(di, -1)), hn::Lt(offset, hn::Set(di, static_cast<std::int32_t>(reach))));
+    if (hn::AllTrue(di, near)) {
+      const NearPicker pick(d, from, offset);
+      return {pick(ends.position), pick(ends.normal), pick(ends.error.data())};
+    }
+  }
   return {gather3(d, ends.position, index), gather3(d, ends.normal, index), hn::GatherIndex(d, ends.error.data(), index)};
 }
 

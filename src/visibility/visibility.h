@@ -26,6 +26,8 @@ class VisibilityWorker {
   virtual ~VisibilityWorker() = default;
   /// Begins scope `scope` of the pass: answers may be shared within it and depend on nothing outside it.
   virtual void begin(std::uint32_t scope) = 0;
+  /// Every query of the scope is a ray: who asks may order them as rays trace fastest.
+  virtual bool exact() const { return false; }
   /// One answer a query: 0 or 1 where the visibility is binary, else unbiased estimates that may leave [0, 1]. `weights` has at least
   /// padded(queries.size) elements; what lies beyond queries.size may be overwritten.
   virtual void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) = 0;

@@ -34,6 +34,7 @@ class Recorder final : public VisibilityInFront {
       current_.scope = scope;
       inner_->begin(scope);
     }
+    bool exact() const override { return inner_->exact(); }
     void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) override {
       if (current_.scope % recorder_.every_ == recorder_.every_ / 2) current_.batches.push_back(queries);
       inner_->visible(queries, weights, rays, counts);

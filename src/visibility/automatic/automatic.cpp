@@ -38,15 +38,22 @@ class SharedTrial {
                                kNanoseconds * trial_.cost(Trial::cached).per_query(), kNanoseconds * trial_.cost(Trial::exact).per_query(),
                                *found == Trial::cached ? "going on with the cache" : "the cache does not pay here, going on with rays"));
   }
-  void set_context(const Context& context) { context_ = &context; }
+  void begin(const Context& context) {
+    context_ = &context;
+    if (verdict() || announced_) return;
+    announced_ = true;
+    context.info("auto: rays, until some tiles have shown whether the cache is cheaper");
+  }
 
  private:
   std::mutex mutex_;
   Trial trial_;
   std::atomic<int> verdict_{-1};
   const Context* context_ = nullptr;
+  bool announced_ = false;
 };
 
+/// While a scope is on trial it is answered by rays: a picture too small for a verdict is exact.
 class AutomaticWorker final : public VisibilityWorker {
  public:
   AutomaticWorker(SharedTrial& trial, std::unique_ptr<VisibilityWorker> cached, std::unique_ptr<VisibilityWorker> exact)
@@ -59,13 +66,21 @@ class AutomaticWorker final : public VisibilityWorker {
     measuring_ = !verdict;
     current().begin(scope);
   }
+  // Rays are measured in the order in which they would be traced.
+  bool exact() const override { return side_ == Trial::exact; }
   void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) override {
     if (!measuring_) return current().visible(queries, weights, rays, counts);
-    const std::uint64_t before = counts.queries;
+    VisibilityCounts tried;
     const auto start = std::chrono::steady_clock::now();
-    current().visible(queries, weights, rays, counts);
+    current().visible(queries, weights, rays, tried);
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    queries_ += counts.queries - before;
+    queries_ += tried.queries;
+    if (side_ == Trial::exact) {
+      counts += tried;
+      return;
+    }
+    counts.traced += tried.traced;
+    exact_->visible(queries, weights, rays, counts);
   }
 
  private:
@@ -92,7 +107,7 @@ class AutomaticVisibility final : public Visibility {
   bool passes_are_independent() const override { return false; }
   float cluster_edge() const override { return cached_->cluster_edge(); }
   void begin_pass(const VisibilityPass& pass, const Context& context) override {
-    trial_.set_context(context);
+    trial_.begin(context);
     cached_->begin_pass(pass, context);
     exact_->begin_pass(pass, context);
   }

@@ -11,6 +11,7 @@ class ExactWorker final : public VisibilityWorker {
  public:
   explicit ExactWorker(const World& world) : tracer_(world) {}
   void begin(std::uint32_t) override {}
+  bool exact() const override { return true; }
   void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) override {
     tracer_.trace_all(queries, weights, rays, counts);
   }

@@ -79,5 +79,48 @@ TEST(AutomaticVisibility, AnswersAsRaysDoWhileItTriesAndAfterwards) {
   EXPECT_NE(said.find("auto:"), std::string::npos) << "it says what it chose";
 }
 
+// One cell for everything: the cache is wrong about most queries. A picture of so few tiles that nothing is decided must be exact.
+TEST(AutomaticVisibility, IsExactUntilItHasDecided) {
+  std::mt19937 random(2);
+  const Mesh mesh = triangle_soup(random, 150, 1, 0.3f);
+  const auto world = World::build(scene_of(mesh), {}, Context());
+  const Context context;
+  const auto make = [&](const char* name) {
+    const VisibilityInfo& info = find_visibility(name);
+    return info.make(world, info.settings, context);
+  };
+  const auto automatic = make("auto"), exact = make("exact"), cached = make("cached");
+  for (const auto& visibility : {automatic.get(), exact.get(), cached.get()}) visibility->begin_pass({}, context);
+  const auto trying = automatic->worker(), tracing = exact->worker(), caching = cached->worker();
+  constexpr std::size_t kCount = 1024;
+  std::vector<float> a(kCount), b(kCount), c(kCount);
+  QueryBatch queries;
+  queries.eye.resize(kCount), queries.resize_lights(1), queries.resize_queries(kCount);
+  queries.light.set(0, Vec3(0), Vec3(0), 0, 0, 0);
+  queries.semantic[0] = static_cast<std::uint8_t>(QuerySemantic::point);
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    queries.eye.set(i, random_point(random, 1.2f), Vec3(0, 0, 1), 0, 100, i);
+    queries.eye_of[i] = i, queries.light_of[i] = 0;
+  }
+  int as_rays = 0;
+  for (std::uint32_t scope = 0; scope < 6; ++scope) {
+    RayCounts rays;
+    VisibilityCounts counts, others;
+    trying->begin(scope);
+    as_rays += trying->exact();
+    trying->visible(queries, a, rays, counts);
+    tracing->visible(queries, b, rays, others);
+    EXPECT_EQ(a, b) << scope;
+    EXPECT_EQ(counts.queries, kCount);
+    EXPECT_GE(counts.traced, kCount) << "rays of the trial count";
+  }
+  EXPECT_EQ(as_rays, 3) << "half of the scopes are asked as rays trace fastest";
+  RayCounts rays;
+  VisibilityCounts counts;
+  caching->begin(0);
+  caching->visible(queries, c, rays, counts);
+  EXPECT_NE(c, b) << "or the test says nothing";
+}
+
 }  // namespace
 }  // namespace sightline::test

@@ -210,6 +210,31 @@ TEST(QueryRays, LanesGiveTheBitsOfTheSingleCall) {
   for (std::size_t i = 0; i < some.size(); ++i) expect_ray(rays, i, some[i]);
 }
 
+// As where queries to one light go through eye points some of which it does not light: up to the very last.
+TEST(QueryRays, LanesGiveTheBitsOfTheSingleCallWhereEndsAreSkipped) {
+  std::mt19937 random(7);
+  for (const std::size_t count : {9u, 33u, 70u}) {
+    std::vector<Query> queries(count);
+    for (Query& q : queries) {
+      q.x = random_point(random, 5), q.y = random_point(random, 5);
+      q.x_normal = random_direction(random), q.x_error = 1e-4f, q.semantic = QuerySemantic::point;
+    }
+    const QueryBatch batch = batch_of(queries);
+    for (const std::uint32_t step : {2u, 3u, 5u}) {
+      std::vector<std::uint32_t> which;
+      for (auto i = static_cast<std::uint32_t>(random() % 3); i < count; i += 1 + static_cast<std::uint32_t>(random() % step))
+        which.push_back(i);
+      RayBatch rays;
+      rays.resize(which.size());
+      query_rays(batch, which.data(), 0, which.size(), rays);
+      for (std::size_t i = 0; i < which.size(); ++i) {
+        const Ray a = rays.get(i), b = query_ray(batch, which[i]);
+        EXPECT_TRUE(a.origin == b.origin && a.direction == b.direction && a.t_far == b.t_far) << count << ' ' << which[i];
+      }
+    }
+  }
+}
+
 TEST(ExactVisibility, GapsAreNeitherAskedNorCounted) {
   const Setting s;
   std::vector<Query> queries(3);
