@@ -29,6 +29,7 @@ class Timed final : public VisibilityInFront {
       inner_->begin(scope);
       seconds_ += watch.seconds();
     }
+    bool exact() const override { return inner_->exact(); }
     void visible(const QueryBatch& queries, std::span<float> weights, RayCounts& rays, VisibilityCounts& counts) override {
       const Stopwatch watch;
       inner_->visible(queries, weights, rays, counts);
