@@ -20,7 +20,9 @@ struct FragmentOptions {
   bool smooth = true;
   bool dark_culling = true;
   bool extra_samples = true;
-  int confirm = 1;  ///< probes that confirm a stable fragment of level 4 or more
+  int confirm = 1;            ///< probes that confirm a stable fragment of level 4 or more
+  int border_rounds = 2;      ///< how often fragments beside jumps of the signal are refined again
+  float border_jump = 0.25f;  ///< in shares of the light
   int nichols_threshold = 6;
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kConfirmLevel = 3;
 constexpr int kExtraLevel = 3;
+constexpr int kPixelsLevel = 2;  // fragments up to this one become pixels at once where a border runs along them
 // By how much an additional sample may differ from its quadrant's: sampling noise where the light is partly seen, little where it is all
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
@@ -44,8 +45,19 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
     for (int c = 0; c < signal.channels; ++c)
       std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
   }
-  finest_.clear();
   children_.assign(fragments.begin(), fragments.end());
+  done_.clear();
+  for (int round = 0;; ++round) {
+    finest_.clear();
+    run_waves(g, sample, signal, statistics);
+    write_pixels(g, sample, signal, statistics);
+    if (round == options_.border_rounds) break;
+    find_borders(g, tile, signal);
+    if (children_.empty()) break;
+  }
+}
+
+void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   while (!children_.empty()) {
     // What the light cannot reach is done; pixels wait for the end.
     current_.clear();
@@ -74,8 +86,48 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
     write_stable(g, signal);
     add_extras(g, sample, signal, statistics);
     counts_.fragments += stable_.size();
+    done_.insert(done_.end(), stable_.begin(), stable_.end());
   }
-  write_pixels(g, sample, signal, statistics);
+}
+
+// Stable fragments beside which the signal jumps: the jump lies somewhere between their probes and the border. Small ones become pixels,
+// large ones are tested again in smaller squares. Neighbours in other root tiles are left out, since other threads write there.
+void Refiner::find_borders(const GBuffer& g, const RootTile& tile, const LightSignal& signal) {
+  const auto value_at = [&](int x, int y) {
+    const int half = (1 << signal.level[g.at(x, y)]) / 2;
+    return half == 0 ? signal.value[0][g.at(x, y)] : signal.value[0][g.at(x & -half, y & -half)];
+  };
+  const auto jumps = [&](int x, int y, int nx, int ny) {
+    if (nx < tile.x0 || ny < tile.y0 || nx >= tile.x1 || ny >= tile.y1 || x >= tile.x1 || y >= tile.y1) return false;
+    const std::size_t here = g.at(x, y), there = g.at(nx, ny);
+    if (g.kind[here] != g.kind[there] || signal.flags[there] & LightSignal::kUnlit) return false;
+    if (std::fabs(value_at(x, y) - value_at(nx, ny)) < options_.border_jump) return false;
+    const Vec3 normal = load(g.geometric_normal, here);
+    return glm::dot(load(g.shading_normal, here), load(g.shading_normal, there)) > 0.9f &&
+           std::fabs(glm::dot(load(g.position, there) - load(g.position, here), normal)) < 0.01f * g.depth[here];
+  };
+  std::size_t kept = 0;
+  for (const Fragment& f : done_) {
+    const int w = f.width();
+    bool jump = false;
+    for (int i = 0; i < w && !jump; ++i) {
+      jump = jumps(f.x + i, f.y, f.x + i, f.y - 1) || jumps(f.x + i, f.y + w - 1, f.x + i, f.y + w) ||
+             jumps(f.x, f.y + i, f.x - 1, f.y + i) || jumps(f.x + w - 1, f.y + i, f.x + w, f.y + i);
+    }
+    if (!jump) {
+      done_[kept++] = f;
+      continue;
+    }
+    --counts_.fragments;
+    if (f.level > kPixelsLevel) {
+      subdivide(f, 0, children_);
+      continue;
+    }
+    for (int y = f.y; y < f.y + w; ++y) {
+      for (int x = f.x; x < f.x + w; ++x) children_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0});
+    }
+  }
+  done_.resize(kept);
 }
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }

@@ -47,6 +47,8 @@ class Refiner {
   RefinementCounts& counts() { return counts_; }
 
  private:
+  void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
+  void find_borders(const GBuffer& g, const RootTile& tile, const LightSignal& signal);
   void classify();
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
@@ -62,7 +64,7 @@ class Refiner {
   const LightPoints* points_ = nullptr;
 
   ReachPyramid reach_;
-  std::vector<Fragment> current_, children_, stable_, unconfirmed_;
+  std::vector<Fragment> current_, children_, stable_, unconfirmed_, done_;
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
   std::vector<std::uint32_t> finest_, extras_, extra_owner_;  ///< an extra sample's fragment: its place in stable_

@@ -24,12 +24,13 @@ struct FragmentsSettings {
   Switch probes = Switch::variant;
   Switch smooth = Switch::variant;
   int confirm = -1;
+  int borders = -1;
   int rays = 16;
   int level0_rays = 64;
   int coarsest = 7;
   int copy_levels = -1;
-  float tau_n = 0.35f;
-  float tau_d = 0.01f;
+  float tau_n = 0.2f;
+  float tau_d = 0.001f;
   Depth depth = Depth::plane;
   int gradient = 7;
   bool subdivide_twice = true;
@@ -66,6 +67,10 @@ struct FragmentsSettings {
           {.help = "probes at random places that confirm a stable fragment of 16 pixels or more; -1 = as the variant says",
            .minimum = -1,
            .maximum = 4});
+    visit("borders", &S::borders,
+          {.help = "how often stable fragments beside a jump of the signal are refined again; -1 = as the variant says",
+           .minimum = -1,
+           .maximum = 8});
     visit("rays", &S::rays, {.help = "rays a probe: 16, or 32 or 64 for large lights", .minimum = 16, .maximum = 64, .symbol = "K"});
     visit("level0_rays", &S::level0_rays, {.help = "rays a pixel at the finest level", .minimum = 16, .maximum = 4096});
     visit("coarsest", &S::coarsest,

@@ -31,34 +31,38 @@ class Uniform {
     const GBuffer& g = input.g;
     for (int j = -1; j <= kBlocks; ++j)
       for (int i = -1; i <= kBlocks; ++i) {
-        Range& range = at(i, j);
-        const int x0 = std::max(tile.x0 + i * kBlock, 0), y0 = std::max(tile.y0 + j * kBlock, 0);
-        const int x1 = std::min(tile.x0 + (i + 1) * kBlock, g.width), y1 = std::min(tile.y0 + (j + 1) * kBlock, g.height);
-        for (int y = y0; y < y1; ++y)
-          for (int x = x0; x < x1; ++x) {
-            const float v = input.signal[g.at(x, y)];
-            range.low = std::min(range.low, v), range.high = std::max(range.high, v);
-          }
+        const int x0 = tile.x0 + i * kBlock, y0 = tile.y0 + j * kBlock;
+        const int columns = std::min(kBlock, g.width - x0), rows = std::min(kBlock, g.height - y0);
+        Block& block = blocks_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)];
+        block.inside = x0 >= 0 && y0 >= 0 && columns > 0 && rows > 0;
+        if (!block.inside) continue;
+        const float* first = input.signal.data() + g.at(x0, y0);
+        block.value = *first;
+        bool differs = false;
+        for (int y = 0; y < rows; ++y, first += g.stride)
+          for (int x = 0; x < columns; ++x) differs |= first[x] != block.value;
+        block.uniform = !differs;
+      }
+    for (std::size_t j = 0; j < kBlocks; ++j)
+      for (std::size_t i = 0; i < kBlocks; ++i) {
+        const float value = blocks_[j + 1][i + 1].value;
+        bool uniform = true;
+        for (std::size_t k = 0; k < 9; ++k) {
+          const Block& block = blocks_[j + k / 3][i + k % 3];
+          uniform = uniform && (!block.inside || (block.uniform && block.value == value));
+        }
+        uniform_[j][i] = uniform;
       }
   }
-  bool operator()(int i, int j) const {
-    Range range;
-    for (int dj = -1; dj <= 1; ++dj)
-      for (int di = -1; di <= 1; ++di) {
-        const Range& r = at(i + di, j + dj);
-        range.low = std::min(range.low, r.low), range.high = std::max(range.high, r.high);
-      }
-    return range.low >= range.high;
-  }
+  bool operator()(int i, int j) const { return uniform_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)]; }
 
  private:
-  struct Range {
-    float low = INFINITY, high = -INFINITY;
+  struct Block {
+    float value = 0;
+    bool inside = false, uniform = false;
   };
-  Range& at(int i, int j) { return ranges_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)]; }
-  const Range& at(int i, int j) const { return ranges_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)]; }
-
-  std::array<std::array<Range, kBlocks + 2>, kBlocks + 2> ranges_;
+  std::array<std::array<Block, kBlocks + 2>, kBlocks + 2> blocks_;
+  std::array<std::array<bool, kBlocks>, kBlocks> uniform_;
 };
 
 }  // namespace
