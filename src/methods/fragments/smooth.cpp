@@ -65,6 +65,21 @@ class Uniform {
   std::array<std::array<bool, kBlocks>, kBlocks> uniform_;
 };
 
+// Whether all that the windows of a run of pixels can see is one value: then it stays.
+bool all_equal(const SmoothInput& input, int x, int y, int count) {
+  const GBuffer& g = input.g;
+  const std::uint8_t* level = input.level.data() + g.at(x, y);
+  const int reach = kRadius * step_of(*std::max_element(level, level + count));
+  const int x0 = std::max(x - reach, 0), x1 = std::min(x + count + reach, g.width);
+  const float value = input.signal[g.at(x, y)];
+  bool differs = false;
+  for (int row = std::max(y - reach, 0); row < std::min(y + reach + 1, g.height); ++row) {
+    const float* values = input.signal.data() + g.at(x0, row);
+    for (int i = 0; i < x1 - x0; ++i) differs |= values[i] != value;
+  }
+  return !differs;
+}
+
 }  // namespace
 
 float smooth_pixel(const SmoothInput& input, int x, int y) {
@@ -124,7 +139,7 @@ void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std
     for (int x = tile.x0; x < tile.x1; x += kRun) {
       const int count = std::min(kRun, tile.x1 - x), i = (x - tile.x0) / kBlock, j = (y - tile.y0) / kBlock;
       const std::size_t at = g.at(x, y);
-      if (uniform(i, j) && uniform(i + 1, j))
+      if ((uniform(i, j) && uniform(i + 1, j)) || all_equal(input, x, y, count))
         std::copy_n(signal.begin() + static_cast<std::ptrdiff_t>(at), count, out.begin() + static_cast<std::ptrdiff_t>(at));
       else
         smooth_row(input, x, y, count, out.data() + at);

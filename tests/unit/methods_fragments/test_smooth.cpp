@@ -2,7 +2,6 @@
 #include "methods/fragments/smooth.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 
@@ -157,23 +156,8 @@ struct Messy {
   }
 };
 
-class PinnedTarget {
- public:
-  explicit PinnedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~PinnedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
 TEST(Smooth, LanesAgreeWithTheDefinitionOnEveryTarget) {
-  std::vector<std::int64_t> targets;
-  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}})
-    if (hwy::SupportedTargets() & target) targets.push_back(target);
-  for (const std::int64_t target : targets) {
+  for (const std::int64_t target : simd_targets()) {
     const PinnedTarget pinned(target);
     for (const auto& [width, height] : {std::pair{129, 131}, {1, 1}, {129, 3}, {128, 128}, {3, 129}}) {
       const Messy messy(width, height, 5);

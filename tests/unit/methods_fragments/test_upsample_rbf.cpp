@@ -1,12 +1,12 @@
 // Radial basis functions at single texels.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 
 #include "base/sample/sobol.h"
 #include "methods/fragments/upsample_rbf.h"
 #include "support/chi_square.h"
+#include "test_upsample_support.h"
 
 namespace sightline::test {
 namespace {
@@ -43,6 +43,16 @@ TEST(UpsampleRbf, SamplesAreReproducedWhereTheyLie) {
     }
 }
 
+TEST(UpsampleRbf, ConstantFieldsAreExactForAnySetOfSamples) {
+  Uniform random(13);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::vector<SignalSample> samples = {sample(16, 16, 5, 0.3f)};
+    for (int i = trial % 4; i > 0; --i) samples.push_back(sample(32 * random.next(), 32 * random.next(), i, 0.3f));
+    for (const auto evaluate : {rbf_region, rbf_region_lanes})
+      EXPECT_NEAR(value_at(evaluate, 32 * random.next(), 32 * random.next(), samples, 32, trial % 2 == 0), 0.3f, 1e-6f);
+  }
+}
+
 TEST(UpsampleRbf, TwoSamplesAreWeightedAsInEquation9) {
   // Levels 3 and 0, two widths of 8 apart: alpha = exp(-d^2 / 2) and C = 2 (level + 1), by hand.
   const std::vector<SignalSample> samples = {sample(4, 4, 3, 0.2f), sample(12.5f, 4.5f, 0, 0.7f)};
@@ -77,24 +87,8 @@ TEST(UpsampleRbf, SamplesBeyondTwoWidthsAreNotUsed) {
   EXPECT_GT(value_at(rbf_region, 2.5f, 2.5f, {sample(4, 4, 3, 0.25f), sample(18.4f, 2.5f, 4, 1)}, 8), 0.26f);
 }
 
-/// Pins Highway to one target for its life.
-class PinnedTarget {
- public:
-  explicit PinnedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~PinnedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
 TEST(UpsampleRbf, LanesAgreeWithTheDefinitionOnEveryTarget) {
-  std::vector<std::int64_t> targets;
-  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}})
-    if (hwy::SupportedTargets() & target) targets.push_back(target);
-  for (const std::int64_t target : targets) {
+  for (const std::int64_t target : simd_targets()) {
     const PinnedTarget pinned(target);
     Uniform random(12);
     for (int trial = 0; trial < 300; ++trial) {

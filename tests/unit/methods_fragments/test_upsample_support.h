@@ -1,6 +1,8 @@
 // Made-up pictures cut into fragments, for tests of upsampling.
 #pragma once
 
+#include <hwy/targets.h>
+
 #include <functional>
 #include <vector>
 
@@ -105,6 +107,26 @@ inline Upsampled upsample_all(const GBuffer& g, const LightSignal& signal, const
         }
   }
   return result;
+}
+
+/// Pins Highway to one target for its life.
+class PinnedTarget {
+ public:
+  explicit PinnedTarget(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  ~PinnedTarget() {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+/// Those of this machine.
+inline std::vector<std::int64_t> simd_targets() {
+  std::vector<std::int64_t> targets;
+  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}})
+    if (hwy::SupportedTargets() & target) targets.push_back(target);
+  return targets;
 }
 
 }  // namespace sightline::test
