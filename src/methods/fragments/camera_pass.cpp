@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/math/vec3_batch.h"
@@ -24,6 +25,7 @@ CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed,
   inside_.resize(kBatch), plain_.resize(kBatch);
   bsdf_.resize(kBatch), frame_.resize(kBatch), kind_.resize(kBatch), form_.resize(kBatch);
   light_.resize(kBatch);
+  turned_geometric_.resize(kBatch), turned_shading_.resize(kBatch), albedo_.resize(kBatch), back_.resize(kBatch);
 }
 
 void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec3Batch& radiance, PassStatistics& statistics) {
@@ -114,33 +116,56 @@ void CameraPass::emit() {
   }
 }
 
+// Blocks of 4 x 4 pixels, row by row. What lies outside the picture is background, whatever else is written there.
 void CameraPass::write(std::size_t root, GBuffer& g, Vec3Batch& radiance) {
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (!inside_[i]) continue;
-    const int x = static_cast<int>(pixel_[i]) % view_.width(), y = static_cast<int>(pixel_[i]) / view_.width();
+  const auto scatter = [&](std::size_t first, std::size_t at, const float* from, float* to) {
+    for (int row = 0; row < kBlock; ++row)
+      std::memcpy(to + at + static_cast<std::size_t>(row * g.stride), from + first + row * kBlock, kBlock * sizeof(float));
+  };
+  const auto scatter3 = [&](std::size_t first, std::size_t at, const Vec3Batch& from, Vec3Batch& to) {
+    scatter(first, at, from.x.data(), to.x.data()), scatter(first, at, from.y.data(), to.y.data());
+    scatter(first, at, from.z.data(), to.z.data());
+  };
+  turn_normals();
+  for (std::size_t first = 0; first < count_; first += kLanes) {
+    const int x = static_cast<int>(pixel_[first]) % view_.width(), y = static_cast<int>(pixel_[first]) / view_.width();
     const std::size_t at = g.at(x, y);
-    store(radiance, at, load(light_, i));
-    if (!hits_.hit(i)) {
-      g.depth[at] = kInfinity;
-      continue;
+    scatter3(first, at, light_, radiance), scatter3(first, at, surfaces_.position, g.position);
+    scatter3(first, at, turned_geometric_, g.geometric_normal), scatter3(first, at, turned_shading_, g.shading_normal);
+    scatter3(first, at, albedo_, g.albedo);
+    scatter(first, at, surfaces_.error.data(), g.error.data()), scatter(first, at, hits_.t.data(), g.depth.data());
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t i = first + lane, to = at + lane % kBlock + lane / kBlock * static_cast<std::size_t>(g.stride);
+      if (!inside_[i]) continue;
+      g.kind[to] = kind_[i], g.back[to] = back_[i];
+      if (kind_[i] != PixelKind::analytic) continue;
+      g.glossy_index[to] = static_cast<std::uint32_t>(g.glossy[root].size());
+      g.glossy[root].push_back({bsdf_[i], *form_[i], frame_[i], -load(rays_.direction, i)});
     }
-    const Vec3 direction = load(rays_.direction, i), position = load(surfaces_.position, i);
-    const Vec3 geometric = load(surfaces_.geometric_normal, i);
-    // Plain surfaces: shading normals give way where they do not see the camera on the side on which the geometric normal does.
-    Vec3 shading = plain_[i] ? load(surfaces_.shading_normal, i) : frame_[i].normal;
-    if (glm::dot(direction, shading) * glm::dot(direction, geometric) <= 0) shading = geometric;
-    const float side = glm::dot(direction, geometric) > 0 ? -1.f : 1.f;
-    const Color albedo = plain_[i] ? load(surfaces_.albedo, i) : bsdf_[i].albedo();
-    g.kind[at] = kind_[i], g.back[at] = side < 0;
-    g.depth[at] = hits_.t[i];
-    g.error[at] = surfaces_.error[i];
-    store(g.position, at, position), store(g.geometric_normal, at, side * geometric), store(g.shading_normal, at, side * shading);
-    store(g.albedo, at, albedo);
-    if (kind_[i] == PixelKind::diffuse && !plain_[i]) store(g.albedo, at, bsdf_[i].albedo());
-    if (kind_[i] == PixelKind::analytic) {
-      g.glossy_index[at] = static_cast<std::uint32_t>(g.glossy[root].size());
-      g.glossy[root].push_back({bsdf_[i], *form_[i], frame_[i], -direction});
+  }
+}
+
+// Normals on the viewer's side, and albedos; shading normals give way where they do not see the camera on the side on which the geometric
+// normal does. Hits at infinity for rays that hit nothing.
+void CameraPass::turn_normals() {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (hits_.hit(i) && !plain_[i]) {
+      store(surfaces_.shading_normal, i, frame_[i].normal);
+      store(albedo_, i, bsdf_[i].albedo());
+    } else {
+      store(albedo_, i, load(surfaces_.albedo, i));
     }
+    if (!hits_.hit(i)) hits_.t[i] = kInfinity;
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
+    const Vec3 shading = load(surfaces_.shading_normal, i);
+    const float by_geometric = glm::dot(direction, geometric), by_shading = glm::dot(direction, shading);
+    const float side = by_geometric > 0 ? -1.f : 1.f;
+    const bool usable = by_shading * by_geometric > 0;
+    back_[i] = side < 0;
+    store(turned_geometric_, i, side * geometric);
+    store(turned_shading_, i, side * (usable ? shading : geometric));
   }
 }
 

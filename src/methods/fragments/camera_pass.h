@@ -31,6 +31,7 @@ class CameraPass {
   void trace(std::uint32_t sample, PassStatistics& statistics);
   void evaluate_materials();
   void emit();
+  void turn_normals();
   void write(std::size_t root, GBuffer& g, Vec3Batch& radiance);
 
   const World& world_;
@@ -50,7 +51,8 @@ class CameraPass {
   std::vector<Frame3> frame_;
   std::vector<std::optional<AnalyticBsdf>> form_;
   std::vector<PixelKind> kind_;
-  Vec3Batch light_;
+  Vec3Batch light_, turned_geometric_, turned_shading_, albedo_;
+  AlignedVector<std::uint8_t> back_;
   std::vector<std::uint32_t> to_sample_;
 };
 

@@ -55,13 +55,19 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
                        PassStatistics& statistics) {
   const std::size_t at_once = std::max<std::size_t>(kLanesAtOnce / count, 1), lanes = at_once * count;
   position_.resize(lanes), key_.resize(padded(lanes)), index_.resize(padded(lanes)), entry_.resize(padded(lanes));
-  u0_.resize(padded(lanes)), u1_.resize(padded(lanes)), selection_.resize(padded(lanes)), term_.resize(padded(lanes));
+  for (auto* numbers : {&u0_, &u1_, &selection_, &term_, &weights_}) numbers->resize(padded(lanes) + kLanes);
+  queries_.resize_lights(lanes);
+  light_.resize(lanes + kLanes), queries_.light.resize(lanes + kLanes);
+  std::fill_n(queries_.semantic.data(), lanes, static_cast<std::uint8_t>(QuerySemantic::surface));
+  queries_.kind = BatchKind::shadow;
+  queries_.surface_ends = SurfaceEnds::area_light;
+  const auto stride = static_cast<std::uint32_t>(g.stride);
   for (std::size_t begin = 0; begin < which.size(); begin += at_once) {
     const std::size_t points = std::min(at_once, which.size() - begin), n = points * count;
     queries_.eye.resize(points);
     for (std::size_t p = 0; p < points; ++p) {
       const std::uint32_t at = pixels[which[begin + p]];
-      const auto x = static_cast<std::uint32_t>(at % static_cast<std::uint32_t>(g.stride)), y = at / static_cast<std::uint32_t>(g.stride);
+      const std::uint32_t x = at % stride, y = at / stride;
       const Vec3 position = load(g.position, at), normal = load(g.geometric_normal, at);
       float area = 0;
       if (!exact_) area = footprint_.area(orthographic_ ? camera_ : normalize_or(position - camera_, -normal), g.depth[at], normal);
@@ -77,52 +83,43 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
     }
     world_.lights().sample_entries(entry_, selection_, position_, u0_, u1_, n, light_);
 
-    queries_.resize_lights(n), queries_.resize_queries(n);
-    std::copy_n(light_.point.x.data(), n, queries_.light.position.x.data());
-    std::copy_n(light_.point.y.data(), n, queries_.light.position.y.data());
-    std::copy_n(light_.point.z.data(), n, queries_.light.position.z.data());
-    std::copy_n(light_.normal.x.data(), n, queries_.light.normal.x.data());
-    std::copy_n(light_.normal.y.data(), n, queries_.light.normal.y.data());
-    std::copy_n(light_.normal.z.data(), n, queries_.light.normal.z.data());
-    std::copy_n(light_.point_error.data(), n, queries_.light.error.data());
-    std::copy_n(index_.data(), n, queries_.light.id.data());
-    std::fill_n(queries_.semantic.data(), n, static_cast<std::uint8_t>(QuerySemantic::surface));
-    queries_.kind = BatchKind::shadow;
-    queries_.surface_ends = SurfaceEnds::area_light;
+    queries_.resize_queries(n);
     for (std::size_t p = 0; p < points; ++p) {
       const std::uint32_t at = pixels[which[begin + p]];
-      const Receiver receiver = receiver_at(g, static_cast<int>(at % static_cast<std::uint32_t>(g.stride)),
-                                            static_cast<int>(at / static_cast<std::uint32_t>(g.stride)));
+      const Receiver receiver = receiver_at(g, static_cast<int>(at % stride), static_cast<int>(at / stride));
+      const FinestRun run{receiver.shading_normal, receiver.geometric_normal, light_, p * count, count};
+      FinestTerms terms = finest_terms(run, ratio, term_.data(), queries_.light_of.data());
+      if (receiver.glossy && ratio) terms = weigh_by_lobe(receiver, run);
       Sums& sums = sums_[which[begin + p]];
-      for (std::size_t i = p * count; i < (p + 1) * count; ++i) {
-        // cos / (pi pdf): irradiance / pi of unit radiance.
-        const Vec3 wi = load(light_.wi, i);
-        const float cosine = glm::dot(wi, receiver.shading_normal);
-        const bool reaches = cosine > 0 && glm::dot(wi, receiver.geometric_normal) > 0 && light_.pdf[i] > 0;
-        float term = reaches ? cosine * kInvPi / light_.pdf[i] : 0.f;
-        if (reaches && ratio) {
-          term *= luminance(load(light_.radiance, i));
-          if (receiver.glossy) term *= lobe_weight(receiver, wi);
-        }
-        term_[i] = term;
-        sums.all += term;
-        sums.asked += term > 0;
-        queries_.eye_of[i] = static_cast<std::uint32_t>(p), queries_.light_of[i] = term > 0 ? static_cast<std::uint32_t>(i) : kNoQuery;
-        queries_.light.cell_area[i] = world_.lights().area(entry_[i]) / selection_[i];
-      }
+      sums.all += terms.all, sums.asked += terms.asked;
+      std::fill_n(queries_.eye_of.data() + p * count, count, static_cast<std::uint32_t>(p));
     }
-    weights_.resize(std::max(weights_.size(), padded(n) + kLanes));
+    // The ends are the samples themselves: arrays change hands instead of being copied.
+    std::swap(queries_.light.position, light_.point), std::swap(queries_.light.normal, light_.normal);
+    std::swap(queries_.light.error, light_.point_error);
+    queries_.light.size = n;
+    if (!exact_) {
+      for (std::size_t i = 0; i < n; ++i)
+        queries_.light.id[i] = index_[i], queries_.light.cell_area[i] = world_.lights().area(entry_[i]) / selection_[i];
+    }
     worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
     for (std::size_t p = 0; p < points; ++p) {
+      const FinestSum sum = finest_sum({Vec3(0), Vec3(0), light_, p * count, count}, !ratio, term_.data(), weights_.data());
       Sums& sums = sums_[which[begin + p]];
-      for (std::size_t i = p * count; i < (p + 1) * count; ++i) {
-        if (!(weights_[i] > 0.5f)) continue;
-        ++sums.seen;
-        sums.visible += term_[i];
-        if (!ratio) sums.irradiance += term_[i] * load(light_.radiance, i);
-      }
+      sums.seen += sum.seen, sums.visible += sum.visible, sums.irradiance += sum.irradiance;
     }
   }
+}
+
+// Surfaces with a lobe: samples count by what they contribute there.
+FinestTerms FinestTest::weigh_by_lobe(const Receiver& receiver, const FinestRun& run) {
+  FinestTerms terms;
+  for (std::size_t i = run.first; i < run.first + run.count; ++i) {
+    if (term_[i] > 0) term_[i] *= lobe_weight(receiver, load(light_.wi, i));
+    if (!(term_[i] > 0)) queries_.light_of[i] = kNoQuery;
+    terms.all += term_[i], terms.asked += term_[i] > 0;
+  }
+  return terms;
 }
 
 }  // namespace sightline

@@ -9,7 +9,9 @@
 
 #include "methods/eye_footprint.h"
 #include "methods/fragments/area_light.h"
+#include "methods/fragments/finest_lanes.h"
 #include "methods/fragments/g_buffer.h"
+#include "methods/fragments/unshadowed.h"
 #include "methods/method.h"
 #include "shade/light_table.h"
 
@@ -35,6 +37,8 @@ class FinestTest {
   /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
   void trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which,
              std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
+
+  FinestTerms weigh_by_lobe(const Receiver& receiver, const FinestRun& run);
 
   struct Sums {
     float visible = 0, all = 0;

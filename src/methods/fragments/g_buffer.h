@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/core/aligned.h"
+#include "base/core/huge_pages.h"
 #include "base/math/frame.h"
 #include "base/math/vec.h"
 #include "shade/analytic/analytic_bsdf.h"
@@ -53,12 +54,16 @@ struct GBuffer {
   AlignedVector<std::uint32_t> glossy_index;     ///< of `analytic` pixels: into their root tile's list
   std::vector<std::vector<GlossyPoint>> glossy;  ///< by root tile
 
-  void resize(int picture_width, int picture_height) {
+  /// `with_glossy`: there may be `analytic` pixels.
+  void resize(int picture_width, int picture_height, bool with_glossy = true) {
     width = picture_width, height = picture_height;
     stride = (width + kRootSize - 1) / kRootSize * kRootSize, rows = (height + kRootSize - 1) / kRootSize * kRootSize;
     const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
+    for (Vec3Batch* batch : {&position, &geometric_normal, &shading_normal, &albedo}) reserve_in_large_pages(*batch, n);
+    reserve_in_large_pages(error, n), reserve_in_large_pages(depth, n);
     position.resize(n), geometric_normal.resize(n), shading_normal.resize(n), albedo.resize(n);
-    error.resize(n), depth.resize(n), kind.resize(n), back.resize(n), glossy_index.resize(n);
+    error.resize(n), depth.resize(n), kind.resize(n), back.resize(n);
+    if (with_glossy) glossy_index.resize(n);
     glossy.resize(root_count());
   }
   std::size_t at(int x, int y) const {

@@ -35,7 +35,10 @@ struct LightSignal {
     channels = channel_count, stride = g.stride, rows = g.rows;
     const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
     level.resize(n), flags.resize(n);
-    for (int c = 0; c < channels; ++c) value[static_cast<std::size_t>(c)].resize(n), extra[static_cast<std::size_t>(c)].resize(n);
+    for (int c = 0; c < channels; ++c) {
+      for (AlignedVector<float>* array : {&value[static_cast<std::size_t>(c)], &extra[static_cast<std::size_t>(c)]})
+        reserve_in_large_pages(*array, n), array->resize(n);
+    }
   }
 };
 

@@ -30,6 +30,7 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   for (const AreaLight& light : lights_)
     points_.push_back(light_points(world.lights(), light, static_cast<std::uint32_t>(options_.split.rays), context.seed));
   g_.resize(view.width(), view.height());
+  reserve_in_large_pages(radiance_, g_.kind.size());
   radiance_.resize(g_.kind.size());
   fragments_.resize(g_.root_count());
   const auto threads = static_cast<std::size_t>(context.thread_count());
@@ -99,7 +100,7 @@ void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample,
 
 void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& statistics) {
   const auto channels = static_cast<std::size_t>(signal_.channels);
-  for (std::size_t c = 0; c < channels; ++c) pixels_[c].resize(g_.kind.size());
+  for (std::size_t c = 0; c < channels; ++c) reserve_in_large_pages(pixels_[c], g_.kind.size()), pixels_[c].resize(g_.kind.size());
   for_roots("upsampling", statistics, [&](std::size_t root, std::size_t, PassStatistics&) {
     alignas(kCacheLine) thread_local std::array<std::array<float, kRootSize * kRootSize>, 3> buffer;
     const std::array<float*, 3> out = {buffer[0].data(), buffer[1].data(), buffer[2].data()};
@@ -112,6 +113,7 @@ void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& sta
   });
   const bool smoothed = options_.smooth && channels == 1;
   if (smoothed) {
+    reserve_in_large_pages(smoothed_, g_.kind.size());
     smoothed_.resize(g_.kind.size());
     for_roots("smoothing", statistics,
               [&](std::size_t root, std::size_t, PassStatistics&) { smooth(g_, pixels_[0], signal_.level, g_.root(root), smoothed_); });
