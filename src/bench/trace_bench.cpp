@@ -11,6 +11,7 @@
 #include "base/sample/warp.h"
 #include "bench/bare_loop.h"
 #include "bench/bench_views.h"
+#include "bench/median.h"
 #include "session/render.h"
 #include "session/stopwatch.h"
 #include "sightline/version.h"
@@ -25,11 +26,6 @@ constexpr std::array<CallStyle, 5> kStyles = {{{1, false}, {8, false}, {8, true}
 
 std::string text(CallStyle style) {
   return fmt::format("{}{}", style.width, style.width == 1 ? "" : style.coherent ? " coherent" : " incoherent");
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 /// Runs several candidates by turns for some rounds; median seconds of each.

@@ -7,34 +7,14 @@
 #include <optional>
 #include <string>
 
+#include "bench/bench_aims.h"
+
 namespace sightline {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Aims {
- public:
-  void at_most(const std::string& figure, const Json& measured, double aim, bool percent = true) {
-    add(figure, measured, aim, true, percent);
-  }
-  void at_least(const std::string& figure, const Json& measured, double aim, bool percent = false) {
-    add(figure, measured, aim, false, percent);
-  }
-  Json take() { return std::move(rows_); }
-
- private:
-  void add(const std::string& figure, const Json& measured, double aim, bool at_most, bool percent) {
-    if (!measured.is_number()) return;
-    const double value = measured.get<double>();
-    rows_.push_back({{"figure", figure},
-                     {"measured", value},
-                     {"aim", aim},
-                     {"at_most", at_most},
-                     {"percent", percent},
-                     {"met", at_most ? value <= aim : value >= aim}});
-  }
-  Json rows_ = Json::array();
-};
+constexpr BenchAims::Shown kPercent = BenchAims::Shown::percent;
 
 /// Rows of the curves of one view and number of samples a pixel; null where they were not measured.
 Json rows_of(const Json& results, const std::string& view, int spp) {
@@ -56,22 +36,22 @@ Json row_of(const Json& results, const std::string& view, int spp, double ce) {
 
 std::string place(const std::string& view, int spp, double ce) { return fmt::format("{}, C_E {}, {} spp", view, ce, spp); }
 
-void rays(const Json& results, const std::string& view, int spp, double ce, double share, std::optional<double> error, Aims& aims) {
+void rays(const Json& results, const std::string& view, int spp, double ce, double share, std::optional<double> error, BenchAims& aims) {
   const Json row = row_of(results, view, spp, ce);
   if (row.is_null()) return;
-  aims.at_most(place(view, spp, ce) + ": traced", row["share_traced"], share);
-  if (error) aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], *error);
+  aims.at_most(place(view, spp, ce) + ": traced", row["share_traced"], share, kPercent);
+  if (error) aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], *error, kPercent);
 }
 
-void speed(const Json& results, const std::string& view, int spp, double ce, double speed_up, double error, Aims& aims) {
+void speed(const Json& results, const std::string& view, int spp, double ce, double speed_up, double error, BenchAims& aims) {
   const Json row = row_of(results, view, spp, ce);
   if (row.is_null()) return;
   aims.at_least(place(view, spp, ce) + ": speed-up", row["speed_up"], speed_up);
-  aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], error);
+  aims.at_most(place(view, spp, ce) + ": L^INF", row["linf"], error, kPercent);
 }
 
 // The fastest whose error is small enough.
-void best_speed(const Json& results, const std::string& view, int spp, double speed_up, double error, Aims& aims) {
+void best_speed(const Json& results, const std::string& view, int spp, double speed_up, double error, BenchAims& aims) {
   std::optional<Json> best;
   for (const Json& row : rows_of(results, view, spp)) {
     if (!(row["linf"].get<double>() <= error)) continue;
@@ -83,7 +63,7 @@ void best_speed(const Json& results, const std::string& view, int spp, double sp
         (*best)["speed_up"], speed_up);
 }
 
-void shadow_maps(const Json& results, Aims& aims) {
+void shadow_maps(const Json& results, BenchAims& aims) {
   for (const Json& view : results["shadow_maps"]) {
     for (const Json& sample : view["samples"]) {
       const Json& rows = sample["rows"];
@@ -92,7 +72,7 @@ void shadow_maps(const Json& results, Aims& aims) {
       for (std::size_t i = 3; i < rows.size(); ++i) least = std::min(least, rows[i]["flip"].get<double>());
       aims.at_most(fmt::format("{}: FLIP; the aim is the best shadow map's",
                                place(view["view"].get<std::string>(), sample["spp"].get<int>(), view["ce"].get<double>())),
-                   rows[1]["flip"], least, false);
+                   rows[1]["flip"], least);
     }
   }
 }
@@ -100,7 +80,7 @@ void shadow_maps(const Json& results, Aims& aims) {
 }  // namespace
 
 Json cache_bench_aims(const Json& results) {
-  Aims aims;
+  BenchAims aims;
   rays(results, "sponza-points", 16, 36, 0.02, 0.01, aims);
   for (const char* view : {"sponza-court", "conference-9"}) {
     rays(results, view, 16, 64, 0.04, {}, aims);
@@ -114,14 +94,14 @@ Json cache_bench_aims(const Json& results) {
     const std::string name = view["view"].get<std::string>();
     for (const Json& row : view["rows"]) {
       const bool refined = row["lookups_per_query"] > 1;
-      aims.at_most(fmt::format("{}, {}: ns a query", name, row["name"].get<std::string>()), row["ns_per_query"], refined ? 12 : 5, false);
+      aims.at_most(fmt::format("{}, {}: ns a query", name, row["name"].get<std::string>()), row["ns_per_query"], refined ? 12 : 5);
     }
     if (view["exact"].contains("throughput_kept"))
-      aims.at_least(name + ": exact path of the bare calls' throughput", view["exact"]["throughput_kept"], 0.9, true);
+      aims.at_least(name + ": exact path of the bare calls' throughput", view["exact"]["throughput_kept"], 0.9, kPercent);
   }
   for (const Json& view : results["flicker"]) {
     const std::string name = view["view"].get<std::string>();
-    aims.at_most(name + ": flicker", view["flicker"], 0.01);
+    aims.at_most(name + ": flicker", view["flicker"], 0.01, kPercent);
     aims.at_least(name + ": cached frames a second", view["cached_frames_per_second"], 4);
   }
   return aims.take();

@@ -9,7 +9,7 @@
 
 #include "base/core/context.h"
 #include "base/math/vec.h"
-#include "image/image.h"
+#include "bench/bench_results.h"
 
 namespace sightline {
 
@@ -27,23 +27,12 @@ struct CacheBenchOptions {
 /// curves, rivals, lookup, flicker, ablations.
 std::vector<std::string> cache_bench_parts();
 
-struct BenchPicture {
-  std::string title, caption;
-  ColorImage image;
-};
-
-struct CacheBenchResults {
-  nlohmann::ordered_json json;
-  std::vector<BenchPicture> pictures;
-  std::optional<ColorImage> strip;  ///< frames of the camera move: cached, exact, difference
-};
-
 /// Measures in this process. Views whose files are missing are left out with a warning. When cancelled, what is complete by then is
 /// returned, with "interrupted": true.
-CacheBenchResults run_cache_bench(const CacheBenchOptions& options, const Context& context);
+BenchResults run_cache_bench(const CacheBenchOptions& options, const Context& context);
 /// The results as Markdown tables.
 std::string cache_bench_markdown(const nlohmann::ordered_json& results);
 /// One page with tables, charts and pictures that needs no other file.
-std::string cache_bench_html(const CacheBenchResults& results);
+std::string cache_bench_html(const BenchResults& results);
 
 }  // namespace sightline

@@ -1,23 +1,16 @@
 // A standard view with the samples that its comparison takes, and pictures of it: exact and cached with the same samples.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bench/bench_views.h"
+#include "bench/bench_shot.h"
 #include "bench/visibility_cache/cache_bench.h"
-#include "session/render.h"
-#include "world/world.h"
 
 namespace sightline {
 
-struct CacheView {
-  std::string name;
-  std::shared_ptr<const World> world;
-  Camera camera;
-  IVec2 size_px{0};
+struct CacheView : BuiltView {
   int light_samples = 64;  ///< of area lights and of the environment, an eye point
   int max_bounces = 0;     ///< above 0: with virtual point lights
   bool has_punctual = false;
@@ -36,15 +29,9 @@ struct ShotRequest {
   bool direct_only = false;          ///< no virtual point lights
 };
 
-/// A finished picture; its time is that of the whole frame.
-struct Shot {
-  ColorImage image;
-  double seconds = 0;
-  PassStatistics statistics;
-};
 Shot shoot(const CacheView& view, const ShotRequest& request, const Context& context);
 
-/// The pictures by turns, each with the median of its times: one round, or three where `rounds` is 0 and a round takes under ten seconds.
+/// The pictures by turns (bench_shot.h).
 std::vector<Shot> shoot_by_turns(const CacheView& view, const std::vector<ShotRequest>& requests, int rounds, const Context& context);
 
 /// Pixels that count in errors: those whose samples of the range, of `spp`, all hit a surface that does not emit (docs/metrics.md).

@@ -1,9 +1,9 @@
 // Ray reduction, speed-up and errors against C_E [Popov2013, Figs. 5-7].
 #include <fmt/format.h>
 
+#include "bench/thumbnail.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
-#include "bench/visibility_cache/thumbnail.h"
 #include "image/metrics/metrics.h"
 
 namespace sightline {
@@ -73,9 +73,12 @@ Json cache_curves(const CacheView& view, const CacheBenchOptions& options, std::
     if (spp != samples.back()) continue;
     // The middle of the range beside the truth.
     const std::size_t shown = (edges.size() + 1) / 2;
-    pictures.push_back({view.name + ", exact", fmt::format("{} samples a pixel", spp), thumbnail(exact.image, kPageWidth)});
-    pictures.push_back({view.name + ", cached", fmt::format("{} samples a pixel, C_E = {}", spp, edges[shown - 1]),
-                        thumbnail(shots[shown].image, kPageWidth)});
+    pictures.push_back(
+        {view.name + ", exact", fmt::format("{} samples a pixel", spp), thumbnail(exact.image, kPageWidth), viewing_exposure(exact.image)});
+    pictures.push_back({view.name + ", cached",
+                        fmt::format("{} samples a pixel, C_E = {}", spp, edges[shown - 1]),
+                        thumbnail(shots[shown].image, kPageWidth),
+                        {}});
   }
   return json;
 }

@@ -1,4 +1,5 @@
 #include "bench/visibility_cache/exact_path.h"
+#include "bench/median.h"
 
 #include <fmt/format.h>
 

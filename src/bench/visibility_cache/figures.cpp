@@ -13,12 +13,6 @@ double ratio(std::uint64_t a, std::uint64_t b) { return b > 0 ? static_cast<doub
 
 }  // namespace
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 QueryFigures query_figures(const VisibilityCounts& counts) {
   QueryFigures figures;
   if (counts.queries == 0) return figures;

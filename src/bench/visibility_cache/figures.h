@@ -10,9 +10,6 @@
 
 namespace sightline {
 
-/// Middle value of a sorted copy; the upper one of two. 0 for nothing.
-double median(std::vector<double> values);
-
 /// What the counts of a picture say.
 struct QueryFigures {
   double share_traced = 0;       ///< rays / queries

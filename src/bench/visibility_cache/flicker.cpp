@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "bench/median.h"
+#include "bench/thumbnail.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
-#include "bench/visibility_cache/thumbnail.h"
 #include "image/false_color.h"
 #include "image/metrics/metrics.h"
 #include "image/tone_map.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "bench/median.h"
 #include "bench/visibility_cache/exact_path.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/frame_share.h"

@@ -5,13 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "bench/bench_page.h"
 #include "bench/visibility_cache/cache_bench.h"
 #include "bench/visibility_cache/tables.h"
-#include "bench/visibility_cache/thumbnail.h"
-#include "image/io/image_io.h"
-#include "image/tone_map.h"
 #include "report/chart.h"
-#include "report/html.h"
 #include "report/index_report.h"
 
 namespace sightline {
@@ -60,11 +57,7 @@ std::vector<Json> sample_counts(const Json& views) {
   return counts;
 }
 
-std::string tables(const Json& results, const std::string& part) {
-  std::string html;
-  for (const BenchTable& table : cache_bench_tables(results, part)) html += html_table(table);
-  return html;
-}
+std::string tables(const Json& results, const std::string& part) { return html_tables(cache_bench_tables(results, part)); }
 
 std::string error_bars(const Json& rows, const std::string& title) {
   std::vector<ChartBar> bars;
@@ -72,22 +65,13 @@ std::string error_bars(const Json& rows, const std::string& title) {
   return bar_chart(bars, {.title = title, .x_label = "mean FLIP"});
 }
 
-std::string strip_figure(const ColorImage& strip) {
-  const std::vector<std::byte> png = encode_png(strip.width, strip.height, 3, to_srgb8(strip));
-  return fmt::format(
-      "<p>Frames, from the top: cached, exact, difference (yellow: half of the mean).</p>\n<img src=\"{}\" width=\"{}\" "
-      "height=\"{}\" alt=\"frames of the camera move\">\n",
-      data_uri("image/png", png), strip.width, strip.height);
-}
-
 }  // namespace
 
-std::string cache_bench_html(const CacheBenchResults& results) {
+std::string cache_bench_html(const BenchResults& results) {
   const Json& json = results.json;
   IndexInput page{.title = "Visibility cache",
                   .text = "One shadow ray for many queries, beside exact rays, shadow maps and NEE++.",
-                  .footer = fmt::format("Sightline {}, {} threads, {}{}", json["sightline"].get<std::string>(), json["threads"].get<int>(),
-                                        json["simd"].get<std::string>(), json["quick"].get<bool>() ? ", quick: not to be quoted" : "")};
+                  .footer = page_footer(json)};
   for (const Json& spp : sample_counts(json["curves"]))
     page.sections.push_back({.title = fmt::format("Against C_E, {} sample{} a pixel", spp.get<int>(), spp == 1 ? "" : "s"),
                              .figure = charts(json["curves"], spp)});
@@ -106,18 +90,12 @@ std::string cache_bench_html(const CacheBenchResults& results) {
   }
   add("Shadow maps", bars + tables(json, "shadow_maps"));
   add("Cost of a look-up", tables(json, "lookup"));
-  add("Camera move", tables(json, "flicker") + (results.strip ? strip_figure(*results.strip) : ""));
+  add("Camera move",
+      tables(json, "flicker") +
+          (results.strip ? strip_figure(*results.strip, "Frames, from the top: cached, exact, difference (yellow: half of the mean).")
+                         : ""));
   add("Ablations", tables(json, "ablations"));
-  if (!results.pictures.empty()) {
-    GallerySection section{.title = "Pictures", .text = "Exposed for looking at; errors are taken without."};
-    float exposure = 0;
-    for (const BenchPicture& picture : results.pictures) {
-      // The cached picture after it alike.
-      if (picture.title.ends_with("exact")) exposure = viewing_exposure(picture.image);
-      section.items.push_back({.title = picture.title, .caption = picture.caption, .image = picture.image, .exposure_ev = exposure});
-    }
-    page.sections.push_back(std::move(section));
-  }
+  if (!results.pictures.empty()) page.sections.push_back(picture_section(results.pictures));
   return index_report(page);
 }
 

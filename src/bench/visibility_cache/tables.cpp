@@ -2,51 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "bench/visibility_cache/cache_bench.h"
-#include "report/html.h"
 
 namespace sightline {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-double number(const Json& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
-// JSON has no infinity: a reduction without any ray is null.
-std::string fixed(const Json& json, int digits) {
-  const double value = number(json);
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "–";
-}
-std::string percent(const Json& json, int digits = 2) {
-  const double value = number(json);
-  return std::isfinite(value) ? fmt::format("{:.{}f} %", 100 * value, digits) : "–";
-}
-std::string signed_percent(const Json& json) {
-  const double value = number(json);
-  return std::isfinite(value) ? fmt::format("{:+.2f} %", 100 * value) : "–";
-}
-std::string seconds(const Json& json) {
-  const double value = number(json);
-  return fmt::format("{:.{}f}", value, value < 1 ? 3 : 2);
-}
-std::string text(const Json& json) { return json.is_string() ? json.get<std::string>() : json.dump(); }
-std::string size_text(const Json& json) { return fmt::format("{}x{}", json[0].get<int>(), json[1].get<int>()); }
-
-std::vector<BenchTable> aim_tables(const Json& rows) {
-  BenchTable table{.title = "Aims",
-                   .note = "For pictures of the views' own size; small pictures have more edges and fewer pixels to share.",
-                   .header = {"figure", "measured", "aim", "met"}};
-  for (const Json& row : rows) {
-    const bool is_share = row["percent"].get<bool>();
-    const auto shown = [&](const Json& value) { return is_share ? percent(value) : fixed(value, number(value) < 1 ? 4 : 2); };
-    table.rows.push_back({text(row["figure"]), shown(row["measured"]),
-                          (row["at_most"].get<bool>() ? "at most " : "at least ") + shown(row["aim"]),
-                          row["met"].get<bool>() ? "yes" : "no"});
-  }
-  return {table};
-}
+using cell::fixed, cell::percent, cell::seconds, cell::signed_percent, cell::text;
 
 std::vector<BenchTable> curve_tables(const Json& views) {
   BenchTable table{.title = "Range of C_E",
@@ -58,7 +23,7 @@ std::vector<BenchTable> curve_tables(const Json& views) {
   for (const Json& view : views) {
     for (const Json& sample : view["samples"]) {
       for (const Json& row : sample["cached"])
-        table.rows.push_back({text(view["view"]) + ", " + size_text(view["size"]), text(sample["spp"]), fixed(row["ce"], 0),
+        table.rows.push_back({text(view["view"]) + ", " + cell::size(view["size"]), text(sample["spp"]), fixed(row["ce"], 0),
                               percent(row["share_traced"]), fixed(row["ray_reduction"], 1), percent(row["occlusion_rays_kept"]),
                               seconds(sample["exact"]["seconds"]), seconds(row["seconds"]), fixed(row["speed_up"], 2), percent(row["linf"]),
                               signed_percent(row["signed_error"]), fixed(row["flip"], 4), fixed(row["lookups_per_query"], 2)});
@@ -71,13 +36,12 @@ std::vector<BenchTable> equal_time_tables(const Json& views) {
   std::vector<BenchTable> tables;
   for (const Json& view : views) {
     BenchTable table{
-        .title = fmt::format("Equal time: {}, {}", text(view["view"]), size_text(view["size"])),
+        .title = fmt::format("Equal time: {}, {}", text(view["view"]), cell::size(view["size"])),
         .note = fmt::format("Against exact visibility with {} other samples a pixel; direct light.", text(view["reference_spp"])),
         .header = {"visibility", "spp", "light samples", "s", "traced", "L^INF", "l2", "FLIP"}};
     for (const Json& row : view["rows"])
       table.rows.push_back({text(row["name"]), text(row["spp"]), text(row["light_samples"]), seconds(row["seconds"]),
-                            percent(row["share_traced"]), percent(row["linf"]), fmt::format("{:.2e}", number(row["l2"])),
-                            fixed(row["flip"], 4)});
+                            percent(row["share_traced"]), percent(row["linf"]), cell::scientific(row["l2"]), fixed(row["flip"], 4)});
     tables.push_back(std::move(table));
   }
   return tables;
@@ -88,7 +52,7 @@ std::vector<BenchTable> shadow_map_tables(const Json& views) {
   for (const Json& view : views) {
     for (const Json& sample : view["samples"]) {
       BenchTable table{
-          .title = fmt::format("Shadow maps: {}, {}, {} spp", text(view["view"]), size_text(view["size"]), text(sample["spp"])),
+          .title = fmt::format("Shadow maps: {}, {}, {} spp", text(view["view"]), cell::size(view["size"]), text(sample["spp"])),
           .note = "Against exact visibility with the same samples.",
           .header = {"visibility", "s", "of it filling, core-s", "s without filling", "filling rays", "L^INF", "FLIP"}};
       for (const Json& row : sample["rows"])
@@ -151,7 +115,7 @@ std::vector<BenchTable> flicker_tables(const Json& views) {
       .note = "One sample a pixel. Flicker: with d = cached - exact, the sum of |d_t - d_(t-1)| over that of the exact picture.",
       .header = {"view", "frames", "C_E", "flicker", "mean L^INF", "traced", "exact, frames/s", "cached, frames/s"}};
   for (const Json& view : views)
-    table.rows.push_back({text(view["view"]) + ", " + size_text(view["size"]), text(view["frames"]), fixed(view["ce"], 0),
+    table.rows.push_back({text(view["view"]) + ", " + cell::size(view["size"]), text(view["frames"]), fixed(view["ce"], 0),
                           percent(view["flicker"]), percent(view["linf"]), percent(view["share_traced"]),
                           fixed(view["exact_frames_per_second"], 1), fixed(view["cached_frames_per_second"], 1)});
   return {table};
@@ -177,39 +141,13 @@ std::vector<BenchTable> ablation_tables(const Json& views) {
 std::vector<BenchTable> cache_bench_tables(const Json& results, const std::string& part) {
   if (!results.contains(part) || results[part].empty()) return {};
   const Json& views = results[part];
-  if (part == "aims") return aim_tables(views);
+  if (part == "aims") return {aims_table(views)};
   if (part == "curves") return curve_tables(views);
   if (part == "equal_time") return equal_time_tables(views);
   if (part == "shadow_maps") return shadow_map_tables(views);
   if (part == "lookup") return lookup_tables(views);
   if (part == "flicker") return flicker_tables(views);
   return ablation_tables(views);
-}
-
-std::string markdown_table(const BenchTable& table) {
-  std::string text = fmt::format("### {}\n\n{}\n\n|", table.title, table.note);
-  for (const std::string& cell : table.header) text += " " + cell + " |";
-  text += "\n|";
-  for (std::size_t i = 0; i < table.header.size(); ++i) text += i < table.text_columns ? "---|" : "---:|";
-  text += "\n";
-  for (const auto& row : table.rows) {
-    text += "|";
-    for (const std::string& cell : row) text += " " + cell + " |";
-    text += "\n";
-  }
-  return text + "\n";
-}
-
-std::string html_table(const BenchTable& table) {
-  std::string html = fmt::format("<h3>{}</h3>\n<p>{}</p>\n<table>\n<tr>", escape_html(table.title), escape_html(table.note));
-  for (const std::string& cell : table.header) html += fmt::format("<th>{}</th>", escape_html(cell));
-  html += "</tr>\n";
-  for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (const std::string& cell : row) html += fmt::format("<td>{}</td>", escape_html(cell));
-    html += "</tr>\n";
-  }
-  return html + "</table>\n";
 }
 
 std::string cache_bench_markdown(const Json& results) {

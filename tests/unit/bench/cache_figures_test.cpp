@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "bench/median.h"
+
 namespace sightline {
 namespace {
 

@@ -46,7 +46,7 @@ TEST(CacheTables, PartsThatWereNotMeasuredHaveNoTables) {
 }
 
 TEST(CacheTables, ThePageHasTheFourChartsAndEscapesNames) {
-  CacheBenchResults results;
+  BenchResults results;
   results.json = results_with_one_curve(49);
   const std::string page = cache_bench_html(results);
   std::size_t charts = 0;

@@ -1,4 +1,4 @@
-#include "bench/visibility_cache/thumbnail.h"
+#include "bench/thumbnail.h"
 
 #include <algorithm>
 #include <cmath>
