@@ -35,7 +35,8 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.split = {s.rays, s.gradient, s.subdivide_twice, s.strict_threshold};
   o.ratio = s.signal == S::Signal::variant ? ours : s.signal == S::Signal::ratio;
   o.finest = {static_cast<std::uint32_t>(s.level0_rays), chosen(s.early_out, ours)};
-  o.interpolate_probes = chosen(s.probes, ours);
+  // Fragments that are compared with their neighbours have one value, that of their centre.
+  o.interpolate_probes = chosen(s.probes, ours) && o.refine == FragmentOptions::Refine::probes;
   o.upsample.kind = kind_of(s.upsample, s.variant);
   o.upsample.copy_levels = s.copy_levels >= 0 ? s.copy_levels : ours ? 1 : 2;
   o.upsample.interpolate_probes = o.interpolate_probes;

@@ -20,6 +20,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void count_refinement(const RefinementCounts& before, const RefinementCounts& after, PassStatistics& statistics) {
+  const auto count = [&](const char* name, std::uint64_t RefinementCounts::* member) {
+    statistics.method_statistics[name] += static_cast<double>(after.*member - before.*member);
+  };
+  count("fragments", &RefinementCounts::fragments), count("level0_fragments", &RefinementCounts::finest);
+  count("test_rays", &RefinementCounts::test_rays), count("confirmation_rays", &RefinementCounts::confirm_rays);
+  count("level0_rays", &RefinementCounts::finest_rays), count("extra_rays", &RefinementCounts::extra_rays);
+  count("extra_samples", &RefinementCounts::extra_samples);
+}
+
 }  // namespace
 
 FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context)
@@ -27,8 +37,9 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   const World& world = *job.world;
   if (job.light_samples > 0) options_.finest.rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
   if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
-  for (const AreaLight& light : lights_)
-    points_.push_back(light_points(world.lights(), light, static_cast<std::uint32_t>(options_.split.rays), context.seed));
+  const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
+  const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);
+  for (const AreaLight& light : lights_) points_.push_back(light_points(world.lights(), light, rays, context.seed));
   g_.resize(view.width(), view.height());
   reserve_in_large_pages(radiance_, g_.kind.size());
   radiance_.resize(g_.kind.size());
@@ -82,18 +93,17 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
 
 void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics) {
   signal_.resize(g_, options_.ratio && light.analytic ? 1 : 3);
+  if (options_.refine == FragmentOptions::Refine::neighbours) {
+    if (!nichols_) nichols_ = std::make_unique<NicholsRefiner>(view_, *job_.visibility, options_, context_);
+    const LightPoints& points = points_[static_cast<std::size_t>(&light - lights_.data())];
+    count_refinement({}, nichols_->refine(g_, fragments_, light, points, refiners_, signal_, statistics), statistics);
+    return upsample_light(light, statistics);
+  }
   for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
     Refiner& refiner = *refiners_[thread];
     const RefinementCounts before = refiner.counts();
     refiner.refine(g_, root, fragments_[root], sample, signal_, local);
-    const RefinementCounts& after = refiner.counts();
-    const auto count = [&](const char* name, std::uint64_t RefinementCounts::* member) {
-      local.method_statistics[name] += static_cast<double>(after.*member - before.*member);
-    };
-    count("fragments", &RefinementCounts::fragments), count("level0_fragments", &RefinementCounts::finest);
-    count("test_rays", &RefinementCounts::test_rays), count("confirmation_rays", &RefinementCounts::confirm_rays);
-    count("level0_rays", &RefinementCounts::finest_rays), count("extra_rays", &RefinementCounts::extra_rays);
-    count("extra_samples", &RefinementCounts::extra_samples);
+    count_refinement(before, refiner.counts(), local);
   });
   upsample_light(light, statistics);
 }

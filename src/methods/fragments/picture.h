@@ -12,6 +12,7 @@
 #include "methods/fragments/compose.h"
 #include "methods/fragments/g_buffer.h"
 #include "methods/fragments/light_signal.h"
+#include "methods/fragments/nichols_refiner.h"
 #include "methods/fragments/options.h"
 #include "methods/fragments/refiner.h"
 #include "methods/method.h"
@@ -53,6 +54,7 @@ class FragmentPicture {
   // By thread.
   std::vector<std::unique_ptr<CameraPass>> cameras_;
   std::vector<std::unique_ptr<Refiner>> refiners_;
+  std::unique_ptr<NicholsRefiner> nichols_;  ///< of all threads
   std::vector<DiscontinuityPyramid> pyramids_;
   std::vector<Composer> composers_;
 };

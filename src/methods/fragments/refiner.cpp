@@ -39,12 +39,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   finest_test_.begin(static_cast<std::uint32_t>(index));
   const RootTile tile = g.root(index);
   reach_.build(g, tile, *light_);
-  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) {
-    std::fill_n(signal.level.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{0});
-    std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});
-    for (int c = 0; c < signal.channels; ++c)
-      std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
-  }
+  clear(g, tile, signal);
   children_.assign(fragments.begin(), fragments.end());
   done_.clear();
   for (int round = 0;; ++round) {
@@ -81,7 +76,7 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     probes_.test(g, current_, masks_, statistics);
     counts_.test_rays += statistics.rays.occlusion - before;
     stable_.clear(), stable_masks_.clear();
-    classify();
+    classify(g, signal);
     confirm(g, statistics);
     write_stable(g, signal);
     add_extras(g, sample, signal, statistics);
@@ -132,13 +127,33 @@ void Refiner::find_borders(const GBuffer& g, const RootTile& tile, const LightSi
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
 
-void Refiner::classify() {
+void Refiner::classify(const GBuffer& g, LightSignal& signal) {
   for (std::size_t i = 0; i < current_.size(); ++i) {
     const bool dark = options_.dark_culling && most_visible(masks_[i]) == 0;
     if (dark || is_stable(current_[i].level, masks_[i], options_.split))
       stable_.push_back(current_[i]), stable_masks_.push_back(masks_[i]);
+    else if (current_[i].level == 1 && options_.finest.early_out && signal.channels == 1)
+      split_to_pixels(g, current_[i], masks_[i], signal);
     else
       split(current_[i], masks_[i]);
+  }
+}
+
+// The probes of a 2 x 2 fragment are its pixels: their rays are the first ones of the finest level, and those pixels whose rays agree are
+// done.
+void Refiner::split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) {
+  for (int q = 0; q < 4; ++q) {
+    const int x = f.x + (q & 1), y = f.y + (q >> 1);
+    if (!g.inside(x, y)) continue;
+    const std::uint64_t mask = masks[static_cast<std::size_t>(q)];
+    const auto at = static_cast<std::uint32_t>(g.at(x, y));
+    if (mask != 0 && mask != all_points()) {
+      finest_.push_back(at);
+      continue;
+    }
+    signal.level[at] = 0, signal.flags[at] = 0;
+    signal.value[0][at] = mask != 0 ? 1.f : 0.f;
+    ++counts_.finest, ++counts_.fragments;
   }
 }
 
@@ -184,6 +199,16 @@ void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
       if (!g.inside(p.x, p.y)) continue;
       extras_.push_back(static_cast<std::uint32_t>(g.at(p.x, p.y))), extra_owner_.push_back(static_cast<std::uint32_t>(i));
     }
+  }
+}
+
+// Pixels without light, until something else is written there.
+void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal) const {
+  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) {
+    std::fill_n(signal.level.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{0});
+    std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});
+    for (int c = 0; c < signal.channels; ++c)
+      std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
   }
 }
 
@@ -247,7 +272,7 @@ Color Refiner::irradiance(const Receiver& receiver, std::uint32_t set, const Pro
 void Refiner::write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const {
   const int half = f.width() / 2;
   const std::uint32_t set = probes_.set_of(f);
-  const std::uint64_t full = points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1;
+  const std::uint64_t full = all_points();
   // Averaged probes: one value at the centre. (Pixels of the smallest fragments have their own.)
   const bool average = !options_.interpolate_probes && f.level > 2;
   std::array<float, 3> mean{};
@@ -275,6 +300,16 @@ void Refiner::write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks
       const Color sum = mask == 0 ? Color(0) : irradiance(receiver(), set, {mask, 0, 0, 0}, 1);
       for (int c = 0; c < 3; ++c) signal.value[static_cast<std::size_t>(c)][at] = sum[c];
     }
+  }
+}
+
+void Refiner::write_centre(const GBuffer& g, const Fragment& f, std::uint64_t mask, LightSignal& signal) const {
+  const int half = f.width() / 2;
+  const Receiver centre = receiver_at(g, std::min(f.x + half, g.width - 1), std::min(f.y + half, g.height - 1));
+  const Color value = signal.channels == 1 ? Color(share(centre, 0, mask)) : irradiance(centre, 0, {mask, 0, 0, 0}, 1);
+  for (int q = 0; q < (f.level == 0 ? 1 : 4); ++q) {
+    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
+    for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = value[c];
   }
 }
 

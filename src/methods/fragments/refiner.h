@@ -37,10 +37,13 @@ class Refiner {
   const RefinementCounts& counts() const { return counts_; }
 
   /// The stages below are public for those who refine by other rules: signals of stable fragments from their masks, of pixels, and of none.
+  void clear(const GBuffer& g, const RootTile& tile, LightSignal& signal) const;
   bool out_of_reach(const GBuffer& g, const Fragment& f) const;
   void write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const;
   void write_constant(const GBuffer& g, const Fragment& f, float value, LightSignal& signal) const;
   void write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const;
+  /// From the mask that the fragment's centre has for the first set of points.
+  void write_centre(const GBuffer& g, const Fragment& f, std::uint64_t mask, LightSignal& signal) const;
   void write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   ProbeTest& probes() { return probes_; }
   std::vector<std::uint32_t>& finest() { return finest_; }
@@ -49,7 +52,9 @@ class Refiner {
  private:
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void find_borders(const GBuffer& g, const RootTile& tile, const LightSignal& signal);
-  void classify();
+  void classify(const GBuffer& g, LightSignal& signal);
+  void split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal);
+  std::uint64_t all_points() const { return points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1; }
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
   void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
