@@ -1,5 +1,7 @@
 #include "methods/fragments/compose.h"
 
+#include <algorithm>
+#include <array>
 #include <span>
 
 #include "base/math/vec3_batch.h"
@@ -28,39 +30,68 @@ const GlossyPoint& glossy_point(const GBuffer& g, std::uint32_t at) {
 
 void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& light, std::span<const float* const> signal,
                    Vec3Batch& radiance) {
-  pixels_.clear(), cut_.clear(), glossy_.clear();
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (std::size_t at = g.at(tile.x0, y); at < g.at(tile.x1, y); ++at) {
-      const bool lit = signal.size() == 1 ? signal[0][at] > 0 : true;
-      if (!lit || (g.kind[at] != PixelKind::diffuse && g.kind[at] != PixelKind::analytic)) continue;
-      const Vec3 normal = load(g.geometric_normal, at);
-      const bool cut = signal.size() == 1 && normal != load(g.shading_normal, at) && !light.above(load(g.position, at), normal);
-      (cut ? cut_ : g.kind[at] == PixelKind::analytic ? glossy_ : pixels_).push_back(static_cast<std::uint32_t>(at));
-    }
-  }
   if (signal.size() == 3) {
-    for (const std::uint32_t at : pixels_)
-      sightline::add(radiance, at, load(g.albedo, at) * Color(signal[0][at], signal[1][at], signal[2][at]));
+    add_irradiance(g, tile, signal, radiance);
     return;
   }
+  groups_.clear(), cut_.clear(), glossy_.clear();
+  std::array<std::uint8_t, kLanes> cut;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; x += static_cast<int>(kLanes)) {
+      const std::size_t at = g.at(x, y);
+      const float* share = signal[0] + at;
+      float most = 0;
+      for (std::size_t i = 0; i < kLanes; ++i) most = std::max(most, share[i]);
+      if (most <= 0) continue;
+      cut_pixels(g, at, kLanes, light, cut.data());
+      Group group{static_cast<std::uint32_t>(at), {}};
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const PixelKind kind = g.kind[at + i];
+        const bool lit = share[i] > 0 && (kind == PixelKind::diffuse || kind == PixelKind::analytic);
+        const bool plain = lit && kind == PixelKind::diffuse && !cut[i];
+        group.share[i] = plain ? share[i] : 0.f;
+        if (lit && !plain) (cut[i] ? cut_ : glossy_).push_back(static_cast<std::uint32_t>(at + i));
+      }
+      groups_.push_back(group);
+    }
+  }
+  add_plain(g, light, radiance);
   add_cut(g, light, signal[0], radiance);
   add_glossy(g, light, signal[0], radiance);
-  const std::size_t n = pixels_.size();
-  position_.resize(n), normal_.resize(n), form_factor_.resize(padded(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t at = pixels_[i];
-    position_.x[i] = g.position.x[at], position_.y[i] = g.position.y[at], position_.z[i] = g.position.z[at];
-    normal_.x[i] = g.shading_normal.x[at], normal_.y[i] = g.shading_normal.y[at], normal_.z[i] = g.shading_normal.z[at];
+}
+
+void Composer::add_irradiance(const GBuffer& g, const RootTile& tile, std::span<const float* const> signal, Vec3Batch& radiance) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (std::size_t at = g.at(tile.x0, y); at < g.at(tile.x1 - 1, y) + 1; ++at) {
+      const float lit = g.kind[at] == PixelKind::diffuse ? 1.f : 0.f;
+      radiance.x[at] += lit * g.albedo.x[at] * signal[0][at];
+      radiance.y[at] += lit * g.albedo.y[at] * signal[1][at];
+      radiance.z[at] += lit * g.albedo.z[at] * signal[2][at];
+    }
   }
+}
+
+// Lambert's surfaces, 16 pixels of a row at a time.
+void Composer::add_plain(const GBuffer& g, const AreaLight& light, Vec3Batch& radiance) {
+  const std::size_t n = groups_.size() * kLanes;
+  position_.resize(n), normal_.resize(n), form_factor_.resize(n);
+  const auto gather = [&](const AlignedVector<float>& from, AlignedVector<float>& to) {
+    for (std::size_t k = 0; k < groups_.size(); ++k) std::copy_n(from.data() + groups_[k].at, kLanes, to.data() + k * kLanes);
+  };
+  gather(g.position.x, position_.x), gather(g.position.y, position_.y), gather(g.position.z, position_.z);
+  gather(g.shading_normal.x, normal_.x), gather(g.shading_normal.y, normal_.y), gather(g.shading_normal.z, normal_.z);
   for (const AreaLight::Member& member : light.members) {
     polygon_irradiance(member.polygon, position_, normal_, n, form_factor_.data(), member.sides);
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::uint32_t at = pixels_[i];
-      const float share = signal[0][at] * form_factor_[i];
-      radiance.x[at] += share * member.radiance.x * g.albedo.x[at];
-      radiance.y[at] += share * member.radiance.y * g.albedo.y[at];
-      radiance.z[at] += share * member.radiance.z * g.albedo.z[at];
-    }
+    const auto scatter = [&](const AlignedVector<float>& albedo, float emitted, AlignedVector<float>& to) {
+      for (std::size_t k = 0; k < groups_.size(); ++k) {
+        const float *factor = form_factor_.data() + k * kLanes, *reflectance = albedo.data() + groups_[k].at;
+        float* sum = to.data() + groups_[k].at;
+        for (std::size_t i = 0; i < kLanes; ++i)
+          sum[i] += groups_[k].share[i] > 0 ? groups_[k].share[i] * factor[i] * emitted * reflectance[i] : 0.f;
+      }
+    };
+    scatter(g.albedo.x, member.radiance.x, radiance.x), scatter(g.albedo.y, member.radiance.y, radiance.y);
+    scatter(g.albedo.z, member.radiance.z, radiance.z);
   }
 }
 

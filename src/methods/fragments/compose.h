@@ -1,12 +1,14 @@
 // From the signal of a light to radiance: the last stage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "methods/fragments/area_light.h"
 #include "methods/fragments/g_buffer.h"
+#include "methods/fragments/reach.h"
 #include "shade/analytic/reflection.h"
 
 namespace sightline {
@@ -19,10 +21,18 @@ class Composer {
   void add(const GBuffer& g, const RootTile& tile, const AreaLight& light, std::span<const float* const> signal, Vec3Batch& radiance);
 
  private:
+  /// 16 pixels of a row, and what they take of the analytic term: 0 for those that are done otherwise.
+  struct Group {
+    std::uint32_t at;
+    std::array<float, kLanes> share;
+  };
+  void add_irradiance(const GBuffer& g, const RootTile& tile, std::span<const float* const> signal, Vec3Batch& radiance);
+  void add_plain(const GBuffer& g, const AreaLight& light, Vec3Batch& radiance);
   void add_cut(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance);
 
   void add_glossy(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance);
-  std::vector<std::uint32_t> pixels_, cut_, glossy_;
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> cut_, glossy_;
   std::vector<Vec3> polygon_;
   Vec3Batch position_, normal_;
   AlignedVector<float> form_factor_;

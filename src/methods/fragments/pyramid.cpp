@@ -4,14 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "base/math/vec3_batch.h"
+#include "methods/fragments/pyramid_lanes.h"
 
 namespace sightline {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-bool interpolated(PixelKind kind) { return kind == PixelKind::diffuse || kind == PixelKind::analytic; }
 
 }  // namespace
 
@@ -24,32 +22,13 @@ DiscontinuityPyramid::DiscontinuityPyramid() {
 
 // Level 0 compares a pixel with its right and its lower neighbour, so that a border between two squares is recorded in the upper left one.
 void DiscontinuityPyramid::build(const GBuffer& g, const RootTile& tile, const GeometryOptions& options) {
-  for (int y = 0; y < kRootSize; ++y) {
-    for (int x = 0; x < kRootSize; ++x) {
-      const int px = tile.x0 + x, py = tile.y0 + y;
-      const std::size_t here = g.at(px, py), to = at(0, x, y);
-      const bool surface = interpolated(g.kind[here]);
-      any_[0][to] = surface;
-      float kappa = 0, dz = 0;
-      for (const bool right : {true, false}) {
-        const int nx = px + (right ? 1 : 0), ny = py + (right ? 0 : 1);
-        if (!g.inside(px, py) || !g.inside(nx, ny)) continue;
-        const std::size_t there = g.at(nx, ny);
-        const bool other = interpolated(g.kind[there]);
-        if (surface != other || (surface && g.kind[here] != g.kind[there])) {
-          kappa = dz = kInfinity;
-        } else if (surface) {
-          // 2 sin(angle / 2) = |N - N'|, so that kappa needs no trigonometry.
-          const Vec3 change = load(g.shading_normal, here) - load(g.shading_normal, there);
-          kappa += glm::dot(change, change);
-          const float step = options.plane_distance
-                                 ? std::fabs(glm::dot(load(g.position, there) - load(g.position, here), load(g.geometric_normal, here)))
-                                 : std::fabs(g.depth[there] - g.depth[here]);
-          dz = std::max(dz, step / g.depth[here]);
-        }
-      }
-      kappa_[0][to] = std::sqrt(kappa), dz_[0][to] = dz;
-    }
+  std::fill(kappa_[0].begin(), kappa_[0].end(), 0.f), std::fill(dz_[0].begin(), dz_[0].end(), 0.f);
+  std::fill(any_[0].begin(), any_[0].end(), std::uint8_t{0});
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const std::size_t to = at(0, 0, y - tile.y0);
+    discontinuities(
+        g, {g.at(tile.x0, y), static_cast<std::size_t>(tile.x1 - tile.x0), tile.x1 == g.width, y + 1 == g.height, options.plane_distance},
+        kappa_[0].data() + to, dz_[0].data() + to, any_[0].data() + to);
   }
   for (int m = 1; m <= kRootLevel; ++m) {
     const int size = kRootSize >> m;

@@ -12,11 +12,8 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE {
-namespace {
 
 using namespace lanes;
-
-}  // namespace
 
 void ReachedPixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* reached) {
   const D d;
@@ -43,15 +40,39 @@ void ReachedPixels(const GBuffer& g, std::size_t first, std::size_t count, const
   }
 }
 
+void CutPixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* cut) {
+  const D d;
+  const auto bytes = hn::Rebind<std::uint8_t, D>();
+  const V zero = hn::Zero(d);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const V3 ng = load3(d, g.geometric_normal, first + i), ns = load3(d, g.shading_normal, first + i);
+    M below = hn::Lt(zero, zero);
+    const M differ = hn::Or(hn::Ne(ng.x, ns.x), hn::Or(hn::Ne(ng.y, ns.y), hn::Ne(ng.z, ns.z)));
+    if (!hn::AllFalse(d, differ)) {
+      const V3 p = load3(d, g.position, first + i);
+      for (const AreaLight::Member& member : light.members) {
+        for (const Vec3& corner : member.polygon) below = hn::Or(below, hn::Le(dot3(sub3(set3(d, corner), p), ng), zero));
+      }
+    }
+    const hn::Vec<DU> ones = hn::IfThenElseZero(hn::RebindMask(DU(), hn::And(differ, below)), hn::Set(DU(), 1u));
+    hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(DI(), ones)), bytes, cut + i);
+  }
+}
+
 }  // namespace sightline::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline {
 HWY_EXPORT(ReachedPixels);
+HWY_EXPORT(CutPixels);
 
 void reached_pixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* reached) {
   HWY_DYNAMIC_DISPATCH(ReachedPixels)(g, first, count, light, reached);
+}
+
+void cut_pixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* cut) {
+  HWY_DYNAMIC_DISPATCH(CutPixels)(g, first, count, light, cut);
 }
 
 ReachPyramid::ReachPyramid() {

@@ -16,6 +16,10 @@ namespace sightline {
 /// the point behind the light. The definition is AreaLight::out_of_reach.
 void reached_pixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* reached);
 
+/// cut[i] = 1 where a facet of a smooth surface sees only a part of the light: the two normals differ and some of the light lies below the
+/// geometric one's horizon.
+void cut_pixels(const GBuffer& g, std::size_t first, std::size_t count, const AreaLight& light, std::uint8_t* cut);
+
 /// One light over one root tile, as a pyramid.
 class ReachPyramid {
  public:

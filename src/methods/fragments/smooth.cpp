@@ -66,9 +66,8 @@ class Uniform {
 };
 
 // Whether all that the windows of a run of pixels can see is one value: then it stays.
-bool all_equal(const SmoothInput& input, int x, int y, int count) {
+bool all_equal(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level) {
   const GBuffer& g = input.g;
-  const std::uint8_t* level = input.level.data() + g.at(x, y);
   const int reach = kRadius * step_of(*std::max_element(level, level + count));
   const int x0 = std::max(x - reach, 0), x1 = std::min(x + count + reach, g.width);
   const float value = input.signal[g.at(x, y)];
@@ -82,12 +81,25 @@ bool all_equal(const SmoothInput& input, int x, int y, int count) {
 
 }  // namespace
 
+std::uint8_t window_level(const SmoothInput& input, int x, int y) {
+  constexpr int kFar = 3, kMixed = 2;
+  const GBuffer& g = input.g;
+  std::uint8_t level = input.level[g.at(x, y)];
+  const auto mix = [&](int px, int py) {
+    if (!g.inside(px, py)) return;
+    const std::uint8_t other = input.level[g.at(px, py)];
+    if (other <= kMixed) level = std::max(level, other);
+  };
+  mix(x - kFar, y), mix(x + kFar, y), mix(x, y - kFar), mix(x, y + kFar);
+  return level;
+}
+
 float smooth_pixel(const SmoothInput& input, int x, int y) {
   const GBuffer& g = input.g;
   const std::size_t centre = g.at(x, y);
   const float own = input.signal[centre];
   if (!receives(g.kind[centre])) return own;
-  const int step = step_of(input.level[centre]);
+  const int level = window_level(input, x, y), step = step_of(level);
 
   // Moments of the window, values relative to the pixel's own.
   float count = 0, fine = 0, sx = 0, sy = 0, sxx = kRidge, sxy = 0, syy = kRidge, t = 0, tx = 0, ty = 0, txx = 0, txy = 0, tyy = 0, tt = 0;
@@ -124,7 +136,7 @@ float smooth_pixel(const SmoothInput& input, int x, int y) {
   const float curved = std::clamp((curvature * curvature / variance - kFlat) / (kCurved - kFlat), 0.f, 1.f);
   const float fit = std::clamp(own + plane + curved * curvature, 0.f, 1.f);
   const float residual = std::max(squares, 0.f) / freedom;
-  const float gentle = std::max(1 - (b * b + c * c) / steep_of(input.level[centre]), 0.f);
+  const float gentle = std::max(1 - (b * b + c * c) / steep_of(level), 0.f);
   const float allowed = kAllowed * gentle * gentle * variance;
   const float keep = std::clamp(residual / std::max(allowed, 1e-20f) - 1, 0.f, 1.f);
   return fit + keep * (own - fit);
@@ -139,10 +151,16 @@ void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std
     for (int x = tile.x0; x < tile.x1; x += kRun) {
       const int count = std::min(kRun, tile.x1 - x), i = (x - tile.x0) / kBlock, j = (y - tile.y0) / kBlock;
       const std::size_t at = g.at(x, y);
-      if ((uniform(i, j) && uniform(i + 1, j)) || all_equal(input, x, y, count))
+      std::array<std::uint8_t, kRun> windows{};
+      bool same = uniform(i, j) && uniform(i + 1, j);
+      if (!same) {
+        for (int k = 0; k < count; ++k) windows[static_cast<std::size_t>(k)] = window_level(input, x + k, y);
+        same = all_equal(input, x, y, count, windows.data());
+      }
+      if (same)
         std::copy_n(signal.begin() + static_cast<std::ptrdiff_t>(at), count, out.begin() + static_cast<std::ptrdiff_t>(at));
       else
-        smooth_row(input, x, y, count, out.data() + at);
+        smooth_row(input, x, y, count, windows.data(), out.data() + at);
     }
 }
 

@@ -145,7 +145,7 @@ HWY_INLINE V fitted(D d, const Moments& m, V own, float steep) {
   return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(own, fit), fit), own);
 }
 
-void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
+void SmoothRow(const SmoothInput& input, int x, int y, int count, const std::uint8_t* window, float* out) {
   const D d;
   const DI di;
   const GBuffer& g = input.g;
@@ -156,7 +156,7 @@ void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
     const Centre centre = {reader.floats(input.signal.data()), reader.vectors(g.position), reader.vectors(g.geometric_normal),
                            reader.vectors(g.shading_normal), hn::Mul(reach, reach)};
     const M active = receives(d, reader, g);
-    const I level = hn::Min(reader.bytes(input.level.data()), hn::Set(di, 3));
+    const I level = hn::Min(hn::PromoteTo(di, hn::LoadU(DB(), window + k)), hn::Set(di, 3));
     V result = centre.own;
     for (int m = 0; m <= 3; ++m) {
       const M lanes = hn::And(active, hn::RebindMask(d, hn::Eq(level, hn::Set(di, m))));
@@ -181,7 +181,9 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 HWY_EXPORT(SmoothRow);
 
-void smooth_row(const SmoothInput& input, int x, int y, int count, float* out) { HWY_DYNAMIC_DISPATCH(SmoothRow)(input, x, y, count, out); }
+void smooth_row(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level, float* out) {
+  HWY_DYNAMIC_DISPATCH(SmoothRow)(input, x, y, count, level, out);
+}
 
 }  // namespace sightline
 #endif

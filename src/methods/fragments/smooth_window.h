@@ -45,10 +45,12 @@ inline constexpr float kRidge = 1e-3f;
 
 }  // namespace smoothing
 
+/// The level that decides how far apart the window's pixels lie: where small fragments are mixed, the noise that the larger ones have in
+/// common surrounds the smaller ones, too.
+std::uint8_t window_level(const SmoothInput& input, int x, int y);
 /// Value of pixel (x, y). The definition.
 float smooth_pixel(const SmoothInput& input, int x, int y);
-/// The same within 1e-5 for `count` pixels from (x, y) on; x is a multiple of 16, and all 16 pixels from there are in the rows' padding at
-/// least.
-void smooth_row(const SmoothInput& input, int x, int y, int count, float* out);
+/// The same within 2e-5 for `count` pixels from (x, y) on, at most 16; x is a multiple of 16. `level` has the window_level() of 16 pixels.
+void smooth_row(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level, float* out);
 
 }  // namespace sightline
