@@ -19,7 +19,6 @@ using namespace sightline::fit;
 using namespace sightline::ltc_table;
 
 constexpr int kEnergyResolution = 320;
-constexpr int kSmoothingSweeps = 3;
 
 using Node = std::array<double, kLobeColumns>;
 using Row = std::array<Node, kCosCount>;
@@ -81,23 +80,6 @@ Row fitted_row(double alpha, const Row& smoother, double exponent) {
   return row;
 }
 
-/// One sweep of second fits, each near the mean of its neighbours.
-void smooth_rows(std::vector<Row>& rows, double exponent) {
-  for (std::size_t i = 1; i < kAlphaCount; ++i) {
-    for (std::size_t j = 1; j + 1 < kCosCount; ++j) {
-      const double c = cos_at(static_cast<int>(j)), alpha = alpha_at(static_cast<int>(i));
-      Node mean = rows[i][j];
-      for (std::size_t k = 0; k < kEnergy; ++k) {
-        const double along = 0.5 * (rows[i][j - 1][k] + rows[i][j + 1][k]);
-        mean[k] = i + 1 < kAlphaCount ? 0.5 * along + 0.25 * (rows[i - 1][j][k] + rows[i + 1][j][k]) : along;
-      }
-      const InverseTransform m = refit_lobe(c, alpha, transform_of(c, alpha, rows[i][j]), transform_of(c, alpha, mean), exponent);
-      rows[i][j] = node_of(c, alpha, m, {rows[i][j][kEnergy], rows[i][j][kSchlick], rows[i][j][kMetal]});
-    }
-    extrapolate_last(rows[i]);
-  }
-}
-
 /// Of what look-ups give between the nodes, where interpolation is at its worst; weighted by cosine for the mean.
 Errors errors_between(const Row& low, const Row& high, double roughness) {
   Errors errors;
@@ -128,7 +110,6 @@ int main(int argc, char** argv) {
   std::vector<Row> rows{mirror_row()};
   extrapolate_last(rows[0]);
   for (int i = 1; i < kAlphaCount; ++i) rows.push_back(fitted_row(alpha_at(i), rows.back(), exponent));
-  for (int sweep = 0; sweep < kSmoothingSweeps; ++sweep) smooth_rows(rows, exponent);
   fmt::print(stderr, "total variation of the specular lobe between nodes: roughness, mean, worst below 60 and 80 degrees, worst\n");
   for (std::size_t i = 1; i + 1 < kAlphaCount; ++i) {
     const double roughness = (static_cast<double>(i) + 0.5) / (kAlphaCount - 1);

@@ -55,7 +55,8 @@ double raw_value(const InverseTransform& m, const Vec3d& w) {
 /// The transform takes the upper hemisphere to one that is tilted in the xz plane; this is the part of the cosine lobe over it.
 double upper_part(const InverseTransform& m) { return m.m11 / std::hypot(m.m11, m.m31); }
 
-/// Integral of |f cos / energy - density|^exponent, with points from both, weighted by the balance heuristic.
+/// Integral of |f cos / energy - fit|^exponent, with points from both and from a plain cosine, weighted by the balance heuristic. The last
+/// is there for the directions where the fit is below zero, which neither of the others need sample well.
 class Distance {
  public:
   Distance(const Slice& slice, double exponent, int resolution) : slice_(slice), exponent_(exponent), resolution_(resolution) {
@@ -63,32 +64,35 @@ class Distance {
     for_each_cell(resolution, [&](const Vec2& u) {
       const Vec3 w = slice.sample(u);
       if (!(w.z > 0)) return;
-      points_.push_back({w, slice.value(w), slice.density(w)});
-      sum += points_.back().value / points_.back().density;
+      points_.push_back(sample_at(Vec3d(w)));
+      sum += points_.back().value / slice.density(w);
     });
     energy_ = sum / (static_cast<double>(resolution) * resolution);
+    for_each_cell(resolution, [&](const Vec2& u) { points_.push_back(sample_at(Vec3d(sample_cosine_hemisphere(u)))); });
   }
   double energy() const { return energy_; }
   double operator()(const InverseTransform& m) const {
     if (!(determinant(m) > 0)) return std::numeric_limits<double>::max();
     double sum = 0;
     const double scale = 1 / upper_part(m);
-    const auto add = [&](double value, double density, double raw) {
-      sum += std::pow(std::fabs(value / energy_ - raw * scale), exponent_) / (density + std::max(raw, 0.0));
+    const auto add = [&](const Sample& s) {
+      const double raw = raw_value(m, s.w);
+      sum += std::pow(std::fabs(s.value / energy_ - raw * scale), exponent_) / (s.density + std::max(raw, 0.0));
     };
-    for (const auto& p : points_) add(p.value, p.density, raw_value(m, p.w));
+    for (const Sample& s : points_) add(s);
     for_each_cell(resolution_, [&](const Vec2& u) {
       const Vec3d w = sample_ltc(m, u);
-      if (w.z > 0) add(slice_.value(Vec3(w)), slice_.density(Vec3(w)), raw_value(m, w));
+      if (w.z > 0) add(sample_at(w));
     });
     return sum / (static_cast<double>(resolution_) * resolution_);
   }
 
  private:
   struct Sample {
-    Vec3 w;
-    double value, density;
+    Vec3d w;
+    double value, density;  // density of the first and the last kind of point
   };
+  Sample sample_at(const Vec3d& w) const { return {w, slice_.value(Vec3(w)), slice_.density(Vec3(w)) + std::numbers::inv_pi * w.z}; }
   Slice slice_;
   double exponent_;
   int resolution_;
@@ -148,21 +152,6 @@ LobeFit fit_lobe(double cosine, double alpha, std::span<const InverseTransform> 
   // A second start finds the way out where the simplex has collapsed too early.
   const InverseTransform m = transform_at(descend(best, 0.05), alpha, isotropic);
   return {m, distance.energy(), total_variation(cosine, alpha, m)};
-}
-
-InverseTransform refit_lobe(double cosine, double alpha, const InverseTransform& fit, const InverseTransform& neighbours, double exponent) {
-  const Distance distance(Slice(cosine, alpha), exponent, kFitResolution);
-  const double least = distance(fit);
-  const Point<4> target = coordinates_of(neighbours, alpha);
-  // A tilt off by 0.1 weighs as much as a hundredth of the error.
-  const auto cost = [&](const Point<4>& x) {
-    double apart = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) apart += std::pow((x[k] - target[k]) / (k == 1 ? std::max(alpha, 0.01) : 1), 2);
-    return distance(transform_at(x, alpha, false)) / least + apart;
-  };
-  const Point<4> from_fit = minimize<4>(cost, coordinates_of(fit, alpha), {0.05, std::min(0.05, alpha), 0.05, 0.05}, 1e-6, 160);
-  const Point<4> from_target = minimize<4>(cost, target, {0.05, std::min(0.05, alpha), 0.05, 0.05}, 1e-6, 160);
-  return transform_at(cost(from_fit) < cost(from_target) ? from_fit : from_target, alpha, false);
 }
 
 double total_variation(double cosine, double alpha, const InverseTransform& m) { return 0.5 * Distance(Slice(cosine, alpha), 1, 64)(m); }

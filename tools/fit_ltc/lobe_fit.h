@@ -29,9 +29,6 @@ struct LobeFit {
 };
 /// Starts at each of the guesses. `exponent`: of the error that is made small, 3 in [Heitz2016].
 LobeFit fit_lobe(double cosine, double alpha, std::span<const InverseTransform> guesses, double exponent);
-/// Fits again, near `neighbours`: valleys of the error are long and flat, and of fits that are about as good a table wants the one that
-/// varies least between nodes.
-InverseTransform refit_lobe(double cosine, double alpha, const InverseTransform& fit, const InverseTransform& neighbours, double exponent);
 /// Half the integral of |f cos / energy - density| for a transform that comes from elsewhere.
 double total_variation(double cosine, double alpha, const InverseTransform& m);
 

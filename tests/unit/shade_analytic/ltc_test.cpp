@@ -68,8 +68,8 @@ std::vector<Rectangle> rectangles_around_mirror(const Vec3& wo, double width) {
 
 /// Total variation of the published fit (README): no share of a lobe is wrong by more. A margin of 0.002 for quadrature.
 double fit_bound(float roughness, float degrees) {
-  const double below_60 = roughness < 0.15f ? 0.008 : roughness < 0.25f ? 0.025 : roughness < 0.4f ? 0.06 : 0.08;
-  const double below_80 = roughness < 0.15f ? 0.04 : roughness < 0.25f ? 0.11 : 0.21;
+  const double below_60 = roughness < 0.12f ? 0.006 : roughness < 0.22f ? 0.021 : roughness < 0.36f ? 0.05 : 0.067;
+  const double below_80 = roughness < 0.12f ? 0.026 : roughness < 0.22f ? 0.09 : 0.18;
   return 0.002 + (degrees <= 60 ? below_60 : below_80);
 }
 
