@@ -21,6 +21,7 @@ struct FragmentOptions {
   bool dark_culling = true;
   bool extra_samples = true;
   int confirm = 1;            ///< probes that confirm a stable fragment of level 4 or more
+  int penumbra_level = 3;     ///< stable fragments from this level on that partly see the light trace more rays
   int border_rounds = 2;      ///< how often fragments beside jumps of the signal are refined again
   float border_jump = 0.25f;  ///< in shares of the light
   int nichols_threshold = 6;

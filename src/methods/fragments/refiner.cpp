@@ -79,6 +79,7 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     classify(g, signal);
     confirm(g, statistics);
     write_stable(g, signal);
+    resolve_penumbrae(g, sample, signal, statistics);
     add_extras(g, sample, signal, statistics);
     counts_.fragments += stable_.size();
     done_.insert(done_.end(), stable_.begin(), stable_.end());
@@ -185,7 +186,7 @@ void Refiner::confirm(const GBuffer& g, PassStatistics& statistics) {
 }
 
 void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
-  extras_.clear(), extra_owner_.clear();
+  extras_.clear(), extra_owner_.clear(), penumbra_.clear(), penumbra_at_.clear();
   for (std::size_t i = 0; i < stable_.size(); ++i) {
     const Fragment& f = stable_[i];
     write_level(g, f, 0, signal);
@@ -193,6 +194,15 @@ void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
       write_constant(g, f, 0, signal);
     else
       write_stable(g, f, stable_masks_[i], signal);
+    // Where the light is partly seen, points shared by four probes make steps between fragments: the probes trace rays of their own.
+    for (int q = 0; q < 4 && f.level >= options_.penumbra_level && signal.channels == 1; ++q) {
+      const std::uint64_t mask = stable_masks_[i][static_cast<std::size_t>(q)];
+      if (mask == 0 || mask == all_points()) continue;
+      const IVec2 pixel = probe_pixel(g, f, q);
+      const int half = f.width() / 2;
+      penumbra_.push_back(static_cast<std::uint32_t>(g.at(pixel.x, pixel.y)));
+      penumbra_at_.push_back(static_cast<std::uint32_t>(g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0))));
+    }
     if (!options_.extra_samples || f.level < kExtraLevel) continue;
     const int half = f.width() / 2;
     for (const IVec2 p : {IVec2(f.x, f.y), IVec2(f.x + half, f.y), IVec2(f.x, f.y + half)}) {
@@ -323,6 +333,14 @@ void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& 
     for (int c = 0; c < signal.channels; ++c)
       signal.value[static_cast<std::size_t>(c)][finest_[i]] = values_[static_cast<std::size_t>(c)][i];
   }
+}
+
+void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
+  if (penumbra_.empty()) return;
+  const std::uint64_t before = statistics.rays.occlusion;
+  finest_test_.test(g, *light_, penumbra_, sample, 1, values_, statistics);
+  counts_.penumbra_rays += statistics.rays.occlusion - before;
+  for (std::size_t i = 0; i < penumbra_.size(); ++i) signal.value[0][penumbra_at_[i]] = values_[0][i];
 }
 
 // Additional samples of the wave's stable fragments. Where one of them contradicts its quadrant, something small lies between the probes.

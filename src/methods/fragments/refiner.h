@@ -22,7 +22,7 @@ namespace sightline {
 struct RefinementCounts {
   std::uint64_t fragments = 0;  ///< stable ones and pixels
   std::uint64_t finest = 0;     ///< of those, pixels of level 0
-  std::uint64_t test_rays = 0, confirm_rays = 0, finest_rays = 0, extra_rays = 0, extra_samples = 0;
+  std::uint64_t test_rays = 0, confirm_rays = 0, finest_rays = 0, penumbra_rays = 0, extra_rays = 0, extra_samples = 0;
 };
 
 /// Buffers of one thread.
@@ -57,6 +57,7 @@ class Refiner {
   std::uint64_t all_points() const { return points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1; }
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
+  void resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void split(const Fragment& f, const ProbeMasks& masks);
   float share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const;
@@ -73,6 +74,7 @@ class Refiner {
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
   std::vector<std::uint32_t> finest_, extras_, extra_owner_;  ///< an extra sample's fragment: its place in stable_
+  std::vector<std::uint32_t> penumbra_, penumbra_at_;         ///< probe pixels, and where their values go
   std::vector<std::uint8_t> contradicted_;
   std::array<std::vector<float>, 3> values_;
   RefinementCounts counts_;

@@ -25,6 +25,7 @@ struct FragmentsSettings {
   Switch smooth = Switch::variant;
   int confirm = -1;
   int borders = -1;
+  int penumbra_level = -1;
   int rays = 16;
   int level0_rays = 64;
   int coarsest = 7;
@@ -69,6 +70,11 @@ struct FragmentsSettings {
            .maximum = 4});
     visit("borders", &S::borders,
           {.help = "how often stable fragments beside a jump of the signal are refined again; -1 = as the variant says",
+           .minimum = -1,
+           .maximum = 8});
+    visit("penumbra_level", &S::penumbra_level,
+          {.help =
+               "stable fragments from this level on that see a part of the light trace more rays, against steps; -1 = as the variant says",
            .minimum = -1,
            .maximum = 8});
     visit("rays", &S::rays, {.help = "rays a probe: 16, or 32 or 64 for large lights", .minimum = 16, .maximum = 64, .symbol = "K"});
