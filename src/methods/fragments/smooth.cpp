@@ -94,12 +94,16 @@ std::uint8_t window_level(const SmoothInput& input, int x, int y) {
   return level;
 }
 
-float smooth_pixel(const SmoothInput& input, int x, int y) {
+namespace {
+
+struct Fit {
+  float value, keep;  // what the window says, and how much of the pixel's own value should stay
+};
+
+Fit fit_window(const SmoothInput& input, int x, int y, int step) {
   const GBuffer& g = input.g;
   const std::size_t centre = g.at(x, y);
   const float own = input.signal[centre];
-  if (!receives(g.kind[centre])) return own;
-  const int level = window_level(input, x, y), step = step_of(level);
 
   // Moments of the window, values relative to the pixel's own.
   float count = 0, fine = 0, sx = 0, sy = 0, sxx = kRidge, sxy = 0, syy = kRidge, t = 0, tx = 0, ty = 0, txx = 0, txy = 0, tyy = 0, tt = 0;
@@ -114,7 +118,7 @@ float smooth_pixel(const SmoothInput& input, int x, int y) {
       sx += fx, sy += fy, sxx += fx * fx, sxy += fx * fy, syy += fy * fy;
       t += v, tx += v * fx, ty += v * fy, txx += v * fx * fx, txy += v * fx * fy, tyy += v * fy * fy, tt += v * v;
     }
-  if (count < kLeastCount) return own;
+  if (count < kLeastCount) return {own, 1};
 
   // The plane a + b x + c y, x and y relative to the window's centre of gravity.
   const float mx = sx / count, my = sy / count, mean = t / count;
@@ -131,15 +135,30 @@ float smooth_pixel(const SmoothInput& input, int x, int y) {
     squares -= (qxx * qxx + qyy * qyy) / 70 + txy * txy / 100, freedom -= 3;
   }
   const float mid = std::clamp(own + plane, 0.f, 1.f);
-  const float ray_variance = (fine * kFineVariance + (count - fine) * kProbeVariance) / count;
-  const float variance = ray_variance * std::min(kTaper * std::min(mid, 1 - mid), 1.f) + kLeastVariance;
+  const float rays = (fine * kFineVariance + (count - fine) * kProbeVariance) / count;
+  const float variance = rays * std::min(kTaper * std::min(mid, 1 - mid), 1.f) + kLeastVariance;
   const float curved = std::clamp((curvature * curvature / variance - kFlat) / (kCurved - kFlat), 0.f, 1.f);
   const float fit = std::clamp(own + plane + curved * curvature, 0.f, 1.f);
   const float residual = std::max(squares, 0.f) / freedom;
-  const float gentle = std::max(1 - (b * b + c * c) / steep_of(level), 0.f);
+  const float gentle = std::max(1 - (b * b + c * c) / kSteep, 0.f);
   const float allowed = kAllowed * gentle * gentle * variance;
   const float keep = std::clamp(residual / std::max(allowed, 1e-20f) - 1, 0.f, 1.f);
-  return fit + keep * (own - fit);
+  return {fit, keep};
+}
+
+}  // namespace
+
+float smooth_pixel(const SmoothInput& input, int x, int y) {
+  const GBuffer& g = input.g;
+  const std::size_t centre = g.at(x, y);
+  float value = input.signal[centre];
+  if (!receives(g.kind[centre])) return value;
+  const int widest = step_of(window_level(input, x, y));
+  for (int step = narrowest_step(widest); step <= widest; step *= 2) {
+    const Fit fit = fit_window(input, x, y, step);
+    value = fit.value + fit.keep * (value - fit.value);
+  }
+  return value;
 }
 
 void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std::uint8_t> level, const RootTile& tile,

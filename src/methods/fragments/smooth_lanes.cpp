@@ -106,11 +106,11 @@ HWY_INLINE Moments gather(D d, const SmoothInput& input, int x, int y, int step,
 
 HWY_INLINE V clamp01(D d, V v) { return hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, 1.f)); }
 
-// The value of lanes from their moments, step by step as in smooth_pixel().
-HWY_INLINE V fitted(D d, const Moments& m, V own, float steep) {
+// What lanes get from their moments, step by step as in smooth.cpp, where `value` is what narrower windows gave.
+HWY_INLINE V fitted(D d, const Moments& m, V own, V value) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.f), two = hn::Set(d, 2.f);
   const M enough = hn::Ge(m.count, hn::Set(d, kLeastCount));
-  if (hn::AllFalse(d, enough)) return own;
+  if (hn::AllFalse(d, enough)) return value;
   const V n = hn::IfThenElse(enough, m.count, hn::Set(d, kLeastCount)), per_n = hn::Div(one, n);
   const V mx = hn::Mul(m.sx, per_n), my = hn::Mul(m.sy, per_n), mean = hn::Mul(m.t, per_n);
   const V vxx = hn::NegMulAdd(m.sx, mx, m.sxx), vxy = hn::NegMulAdd(m.sx, my, m.sxy), vyy = hn::NegMulAdd(m.sy, my, m.syy);
@@ -139,10 +139,10 @@ HWY_INLINE V fitted(D d, const Moments& m, V own, float steep) {
   const V fit = clamp01(d, hn::Add(own, hn::MulAdd(curved, curvature, plane)));
   const V residual = hn::Div(hn::Max(squares, zero), freedom);
   const V slope = hn::MulAdd(b, b, hn::Mul(c, c));
-  const V gentle = hn::Max(hn::NegMulAdd(slope, hn::Set(d, 1 / steep), one), zero);
+  const V gentle = hn::Max(hn::NegMulAdd(slope, hn::Set(d, 1 / kSteep), one), zero);
   const V allowed = hn::Mul(hn::Mul(hn::Mul(hn::Set(d, kAllowed), gentle), gentle), variance);
   const V keep = clamp01(d, hn::Sub(hn::Div(residual, hn::Max(allowed, hn::Set(d, 1e-20f))), one));
-  return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(own, fit), fit), own);
+  return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(value, fit), fit), value);
 }
 
 void SmoothRow(const SmoothInput& input, int x, int y, int count, const std::uint8_t* window, float* out) {
@@ -158,11 +158,12 @@ void SmoothRow(const SmoothInput& input, int x, int y, int count, const std::uin
     const M active = receives(d, reader, g);
     const I level = hn::Min(hn::PromoteTo(di, hn::LoadU(DB(), window + k)), hn::Set(di, 3));
     V result = centre.own;
-    for (int m = 0; m <= 3; ++m) {
-      const M lanes = hn::And(active, hn::RebindMask(d, hn::Eq(level, hn::Set(di, m))));
+    for (int step = 1; step <= step_of(3); step *= 2) {
+      static_assert(step_of(0) == 1 && step_of(1) == 1 && step_of(2) == 2 && step_of(3) == 4 && narrowest_step(4) == 2);
+      const M large = hn::RebindMask(d, hn::Gt(level, hn::Set(di, step == 4 ? 2 : 1)));
+      const M lanes = step == 1 ? hn::AndNot(large, active) : hn::And(large, active);
       if (hn::AllFalse(d, lanes)) continue;
-      const Moments moments = gather(d, input, x + k, y, step_of(m), centre);
-      result = hn::IfThenElse(lanes, fitted(d, moments, centre.own, steep_of(m)), result);
+      result = hn::IfThenElse(lanes, fitted(d, gather(d, input, x + k, y, step, centre), centre.own, result), result);
     }
     if (k + n <= count) {
       hn::StoreU(result, d, out + k);

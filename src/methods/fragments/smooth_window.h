@@ -21,6 +21,8 @@ inline constexpr float kWhole = 25;  ///< pixels of a whole window
 /// Pixels from one of the window to the next, by level. Probes of a fragment share their light points, so their errors are alike: the
 /// window has to span some fragments.
 constexpr int step_of(int level) { return level < 2 ? 1 : level == 2 ? 2 : 4; }
+/// Large fragments may be stable by chance: where the widest window sees more than noise, one half as wide is tried.
+constexpr int narrowest_step(int widest) { return widest == 4 ? 2 : widest; }
 /// Variance of 64 and of 16 stratified rays. A straight border crosses 8 of 8 x 8 strata and 4 of 4 x 4, a quarter each at most; twice
 /// that, since borders are not always straight, nor occluders only one.
 inline constexpr float kFineVariance = 2 * 8 * 0.25f / (64 * 64);
@@ -35,7 +37,7 @@ inline constexpr float kFlat = 0.1f, kCurved = 0.3f;
 inline constexpr float kAllowed = 1.5f;
 /// Squared slope from one pixel of the window to the next at which nothing is allowed any more: a steep penumbra is narrow, so that its
 /// ends are in the window, and the error of missing them grows with the slope. (Penumbrae of 4 pixels must not get worse.)
-constexpr float steep_of(int level) { return level == 0 ? 0.017f : 0.016f; }
+inline constexpr float kSteep = 0.016f;
 /// With fewer pixels a plane says nothing.
 inline constexpr float kLeastCount = 10;
 /// What is one surface, as for upsampling.
