@@ -10,10 +10,10 @@ namespace sightline {
 
 struct UpsampleOptions {
   enum class Kind {
-    rbf,        ///< radial basis functions whose variance adapts to the levels of their samples [Koa, Eqs. 4-9]
+    rbf,        ///< radial basis functions whose variance adapts to the levels of their samples [Koa2017, Eqs. 4-9]
     rbf_fixed,  ///< the same with C = 1 and distances in widths of the texel's fragment
     multipass,  ///< level by level, bilinear [Nichols2010]
-    quad4,      ///< radial basis functions over the corners of the texel's quadrant
+    quad4,      ///< radial basis functions over the corners of the texel's quadrant; of probes: continuous patches (upsample_patch.h)
   };
   Kind kind = Kind::rbf;
   int copy_levels = 2;  ///< fragments up to this level are not interpolated: each pixel takes its quadrant's value
