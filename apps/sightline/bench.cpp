@@ -1,6 +1,8 @@
 // sightline bench
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/core/error.h"
@@ -25,17 +27,44 @@ int run_trace(const CommandLine& line, const Context& context) {
   return kDone;
 }
 
+/// An option that not every suite reads.
+struct SuiteOption {
+  const char* name;
+  bool given;
+  std::vector<std::string> suites;
+};
+
+void check_suite_options(const BenchCommand& command, const std::string& suite) {
+  const std::vector<SuiteOption> options = {
+      {"--part", !command.parts.empty(), {"fragments", "visibility-cache"}},
+      {"--html", !command.html.empty(), {"fragments", "visibility-cache"}},
+      {"--strip", !command.strip.empty(), {"fragments", "visibility-cache"}},
+      {"--ce", !command.ce.empty(), {"visibility-cache"}},
+      {"--spp", !command.spp.empty(), {"visibility-cache"}},
+      {"--truth-samples", command.truth_samples.has_value(), {"fragments"}},
+      {"--rounds", command.rounds.has_value(), {"fragments"}},
+      {"--cache-dir", !command.cache_directory.empty(), {"fragments"}},
+  };
+  for (const SuiteOption& option : options) {
+    if (option.given && std::find(option.suites.begin(), option.suites.end(), suite) == option.suites.end())
+      throw usage_error(
+          fmt::format("{} belongs to the suite{} {}", option.name, option.suites.size() > 1 ? "s" : "", fmt::join(option.suites, " and ")));
+  }
+}
+
 }  // namespace
 
 int run_bench(const CommandLine& line, Console&, Context& context) {
+  constexpr const char* kKnown = "known: trace, fragments, visibility-cache";
   const BenchCommand& command = line.bench;
-  if (command.suites.size() > 1) throw usage_error("one benchmark suite at a time").remedy("known: trace, visibility-cache");
+  if (command.suites.size() > 1) throw usage_error("one benchmark suite at a time").remedy(kKnown);
   const std::string suite = command.suites.empty() ? "trace" : command.suites.front();
   context.progress = {};
+  if (suite != "trace" && suite != "fragments" && suite != "visibility-cache")
+    throw usage_error("unknown benchmark suite '" + suite + "'").remedy(kKnown);
+  check_suite_options(command, suite);
   if (suite == "visibility-cache") return run_visibility_cache_bench(line, context);
-  if (suite != "trace") throw usage_error("unknown benchmark suite '" + suite + "'").remedy("known: trace, visibility-cache");
-  if (!command.html.empty() || !command.strip.empty() || !command.parts.empty() || !command.ce.empty() || !command.spp.empty())
-    throw usage_error("--html, --strip, --part, --ce and --spp belong to the suite visibility-cache");
+  if (suite == "fragments") return run_fragments_bench(line, context);
   return run_trace(line, context);
 }
 

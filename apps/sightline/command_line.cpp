@@ -258,19 +258,26 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   info->add_flag("--json", line.info.json, "as JSON");
 
   CLI::App* bench = app.add_subcommand("bench", "measure: methods and tracers side by side");
-  bench->add_option("SUITE", line.bench.suites, "trace (default) or visibility-cache");
+  bench->add_option("SUITE", line.bench.suites, "trace (default), fragments or visibility-cache");
   const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
     bench->add_option(name, target, help)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
   };
   add_list("--view", line.bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
-  add_list("--part", line.bench.parts, "visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)", "LIST");
+  add_list("--part", line.bench.parts,
+           "fragments: table, curve, sizes, interactive; visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)",
+           "LIST");
   add_list("--ce", line.bench.ce, "visibility-cache: C_E of the curves (default: 4,8,16,36,64)", "LIST");
   add_list("--spp", line.bench.spp, "visibility-cache: samples a pixel of curves and shadow maps (default: 1,9,16)", "LIST");
   bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
-  bench->add_option("--html", line.bench.html, "visibility-cache: charts, tables and pictures as one page")->type_name("FILE");
-  bench->add_option("--strip", line.bench.strip, "visibility-cache: frames of the camera move as a PNG")->type_name("FILE");
+  bench->add_option("--html", line.bench.html, "charts, tables and pictures as one page (not of trace)")->type_name("FILE");
+  bench->add_option("--strip", line.bench.strip, "frames of the camera move as a PNG (not of trace)")->type_name("FILE");
   add_parsed(*bench, "--size", line.bench.size_px, parse_size, "picture size (default: the views' own, 1280x960)", "WxH");
+  add_optional(*bench, "--truth-samples", line.bench.truth_samples, "fragments: shadow rays a pixel of the reference (default: 4096)", "N")
+      ->check(CLI::Range(1, 1 << 20));
+  add_optional(*bench, "--rounds", line.bench.rounds, "fragments: rounds that times are the median of (default: 3)", "N")
+      ->check(CLI::Range(1, 1000));
+  bench->add_option("--cache-dir", line.bench.cache_directory, "fragments: folder in which reference pictures are kept")->type_name("DIR");
   bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
 
   CLI::App* gallery = app.add_subcommand("gallery", "pictures and what they say about themselves as one HTML page");

@@ -58,7 +58,9 @@ struct InfoCommand {
 
 struct BenchCommand {
   std::vector<std::string> suites, views;
-  std::vector<std::string> parts, ce, spp;  ///< of the suite visibility-cache
+  std::vector<std::string> parts, ce, spp;
+  std::optional<int> truth_samples, rounds;
+  std::string cache_directory;
   std::optional<IVec2> size_px;
   std::string json, markdown, html, strip;
   bool quick = false;

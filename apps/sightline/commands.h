@@ -15,6 +15,7 @@ int run_compare(const CommandLine& line, Console& console, Context& context);
 int run_methods(const CommandLine& line);
 int run_info(const CommandLine& line, Context& context);
 int run_bench(const CommandLine& line, Console& console, Context& context);
+int run_fragments_bench(const CommandLine& line, Context& context);
 int run_visibility_cache_bench(const CommandLine& line, Context& context);
 int run_gallery(const CommandLine& line);
 int run_merge(const CommandLine& line, Context& context);
