@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/core/aligned.h"
-#include "base/core/huge_pages.h"
 #include "base/math/frame.h"
 #include "base/math/vec.h"
 #include "shade/analytic/analytic_bsdf.h"
@@ -54,17 +53,22 @@ struct GBuffer {
   AlignedVector<std::uint32_t> glossy_index;     ///< of `analytic` pixels: into their root tile's list
   std::vector<std::vector<GlossyPoint>> glossy;  ///< by root tile
 
-  /// `with_glossy`: there may be `analytic` pixels.
-  void resize(int picture_width, int picture_height, bool with_glossy = true) {
+  void set_size(int picture_width, int picture_height) {
     width = picture_width, height = picture_height;
     stride = (width + kRootSize - 1) / kRootSize * kRootSize, rows = (height + kRootSize - 1) / kRootSize * kRootSize;
-    const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
-    for (Vec3Batch* batch : {&position, &geometric_normal, &shading_normal, &albedo}) reserve_in_large_pages(*batch, n);
-    reserve_in_large_pages(error, n), reserve_in_large_pages(depth, n);
-    position.resize(n), geometric_normal.resize(n), shading_normal.resize(n), albedo.resize(n);
-    error.resize(n), depth.resize(n), kind.resize(n), back.resize(n);
-    if (with_glossy) glossy_index.resize(n);
     glossy.resize(root_count());
+  }
+  std::size_t element_count() const { return static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows); }
+  void resize(int picture_width, int picture_height) {
+    set_size(picture_width, picture_height);
+    for (AlignedVector<float>* array : arrays()) array->resize(element_count());
+    kind.resize(element_count()), back.resize(element_count()), glossy_index.resize(element_count());
+  }
+  std::vector<AlignedVector<float>*> arrays() {
+    std::vector<AlignedVector<float>*> all = {&error, &depth};
+    for (Vec3Batch* batch : {&position, &geometric_normal, &shading_normal, &albedo})
+      all.insert(all.end(), {&batch->x, &batch->y, &batch->z});
+    return all;
   }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);

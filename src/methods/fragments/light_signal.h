@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "base/core/aligned.h"
+#include "base/core/huge_pages.h"
 #include "methods/fragments/g_buffer.h"
 
 namespace sightline {

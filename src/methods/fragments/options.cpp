@@ -1,5 +1,7 @@
 #include "methods/fragments/options.h"
 
+#include <algorithm>
+
 namespace sightline {
 namespace {
 
@@ -34,7 +36,9 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.geometry = {s.tau_n, s.tau_d, s.depth == S::Depth::plane, s.coarsest};
   o.split = {s.rays, s.gradient, s.subdivide_twice, s.strict_threshold};
   o.ratio = s.signal == S::Signal::variant ? ours : s.signal == S::Signal::ratio;
-  o.finest = {static_cast<std::uint32_t>(s.level0_rays), chosen(s.early_out, ours)};
+  // Smoothed penumbrae need half the rays. Everywhere refined is Monte Carlo.
+  const int rays = s.level0_rays > 0 ? std::max(s.level0_rays, 16) : ours && o.refine == FragmentOptions::Refine::probes ? 32 : 64;
+  o.finest = {static_cast<std::uint32_t>(rays), chosen(s.early_out, ours)};
   // Fragments that are compared with their neighbours have one value, that of their centre.
   o.interpolate_probes = chosen(s.probes, ours) && o.refine == FragmentOptions::Refine::probes;
   o.upsample.kind = kind_of(s.upsample, s.variant);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "base/core/huge_pages.h"
 #include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
 #include "methods/fragments/smooth.h"
@@ -40,12 +41,24 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
   const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);
   for (const AreaLight& light : lights_) points_.push_back(light_points(world.lights(), light, rays, context.seed));
-  g_.resize(view.width(), view.height());
-  reserve_in_large_pages(radiance_, g_.kind.size());
-  radiance_.resize(g_.kind.size());
+  allocate();
   fragments_.resize(g_.root_count());
   const auto threads = static_cast<std::size_t>(context.thread_count());
   cameras_.resize(threads), refiners_.resize(threads), pyramids_.resize(threads), composers_.resize(threads);
+}
+
+// The first touch of a picture's arrays takes as long as some of the stages: threads share it.
+void FragmentPicture::allocate() {
+  g_.set_size(view_.width(), view_.height());
+  const std::size_t n = g_.element_count();
+  std::vector<AlignedVector<float>*> arrays = g_.arrays();
+  for (AlignedVector<float>* more : {&radiance_.x, &radiance_.y, &radiance_.z, &pixels_[0]}) arrays.push_back(more);
+  if (options_.smooth) arrays.push_back(&smoothed_);
+  if (options_.ratio && !lights_.empty()) arrays.insert(arrays.end(), {&signal_.value[0], &signal_.extra[0]});
+  parallel_for(context_, arrays.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) reserve_in_large_pages(*arrays[i], n), arrays[i]->resize(n);
+  });
+  g_.kind.resize(n), g_.back.resize(n), g_.glossy_index.resize(n);
 }
 
 // Runs body(root tile, thread, statistics) over all root tiles, and adds up what they counted and how long they took.

@@ -28,6 +28,7 @@ class FragmentPicture {
   void render(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
 
  private:
+  void allocate();
   template <class Body>
   void for_roots(const char* stage, PassStatistics& statistics, Body body);
   void render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics);
@@ -45,7 +46,7 @@ class FragmentPicture {
   std::vector<LightPoints> points_;
 
   GBuffer g_;
-  Vec3Batch radiance_, map_;
+  Vec3Batch radiance_;
   LightSignal signal_;
   std::array<AlignedVector<float>, 3> pixels_;
   AlignedVector<float> smoothed_;

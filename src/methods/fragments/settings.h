@@ -27,7 +27,7 @@ struct FragmentsSettings {
   int borders = -1;
   int penumbra_level = -1;
   int rays = 16;
-  int level0_rays = 64;
+  int level0_rays = 0;
   int coarsest = 7;
   int copy_levels = -1;
   float tau_n = 0.2f;
@@ -78,7 +78,8 @@ struct FragmentsSettings {
            .minimum = -1,
            .maximum = 8});
     visit("rays", &S::rays, {.help = "rays a probe: 16, or 32 or 64 for large lights", .minimum = 16, .maximum = 64, .symbol = "K"});
-    visit("level0_rays", &S::level0_rays, {.help = "rays a pixel at the finest level", .minimum = 16, .maximum = 4096});
+    visit("level0_rays", &S::level0_rays,
+          {.help = "rays a pixel at the finest level; 0 = as the variant says", .minimum = 0, .maximum = 4096});
     visit("coarsest", &S::coarsest,
           {.help = "level of the coarsest fragments, of 2^n pixels", .minimum = 1, .maximum = 7, .symbol = "M_max"});
     visit("copy_levels", &S::copy_levels,
