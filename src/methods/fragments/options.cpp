@@ -22,7 +22,15 @@ UpsampleOptions::Kind kind_of(S::Upsample setting, S::Variant variant) {
     case S::Upsample::variant:
       break;
   }
-  return variant == S::Variant::nichols ? UpsampleOptions::Kind::multipass : UpsampleOptions::Kind::rbf;
+  switch (variant) {
+    case S::Variant::nichols:
+      return UpsampleOptions::Kind::multipass;
+    case S::Variant::koa:
+      return UpsampleOptions::Kind::rbf;
+    case S::Variant::sightline:
+      break;
+  }
+  return UpsampleOptions::Kind::quad4;
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include "base/core/aligned.h"
 #include "base/math/frame.h"
 #include "film/view.h"
+#include "methods/lambert_lanes.h"
 #include "methods/method.h"
-#include "methods/reference/lambert_lanes.h"
-#include "methods/reference/queries.h"
+#include "methods/shadow_queries.h"
 #include "shade/bsdf.h"
 #include "world/world.h"
 

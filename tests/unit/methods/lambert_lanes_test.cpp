@@ -1,5 +1,5 @@
 // The vector path of Lambert surfaces against the scalar classes it stands for, on every instruction set of this machine.
-#include "methods/reference/lambert_lanes.h"
+#include "methods/lambert_lanes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

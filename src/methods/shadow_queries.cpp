@@ -1,4 +1,4 @@
-#include "methods/reference/queries.h"
+#include "methods/shadow_queries.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Shadow rays of the reference as visibility queries, for every --visibility but exact rays.
+// Shadow rays as visibility queries, for methods that sample lights and every --visibility but exact rays.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "methods/eye_footprint.h"
-#include "methods/reference/lambert_lanes.h"
+#include "methods/lambert_lanes.h"
 #include "trace/ray_batch.h"
 #include "visibility/visibility.h"
 #include "world/world.h"

@@ -1,10 +1,10 @@
-#include "methods/reference/lambert_lanes.h"
+#include "methods/lambert_lanes.h"
 
 #include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "methods/reference/lambert_lanes.cpp"
+#define HWY_TARGET_INCLUDE "methods/lambert_lanes.cpp"
 #include "base/simd/targets.h"
 
 #include <hwy/foreach_target.h>
