@@ -11,8 +11,9 @@
 namespace sightline {
 namespace {
 
-// Light samples worked off at a time: they, their ends and their answers stay in the L2 cache beside the visibility's table.
-constexpr std::size_t kBatch = 4096;
+// Light samples worked off at a time: they, their ends and their answers stay in the L2 cache beside the visibility's table. Without a
+// table there is room for more, and the more eye points share a light, the better its rays trace together.
+constexpr std::size_t kBatch = 4096, kExactBatch = 16384;
 // Directions of the environment from which each of an eye point's samples is chosen. To draw one anew costs several reads of tables far
 // larger than the L2 cache; a tile's set stays in it, and its ends are shared by many queries.
 constexpr std::uint32_t kSkyChoices = 64;
@@ -43,7 +44,6 @@ EyeKernel::EyeKernel(const World& world, const View& view, Visibility& visibilit
       seed_(context.seed),
       context_(context),
       lights_(lights),
-      spatial_order_(visibility.exact()),
       first_segment_(visibility.cluster_edge() * visibility.cluster_edge()),
       eye_paths_(world, view, {settings.specular_depth, settings.least_weight, context.seed}),
       absorption_(world),
@@ -56,10 +56,11 @@ void EyeKernel::render_tile(const Tile& tile, SampleRange range, const EyePass& 
   may_stop_ = (frame.aovs().bits() & ~late.bits()) == 0;
   eye_paths_.trace(tile, range, pass.samples, paths_, eye_samples_, frame, statistics.rays);
   for (EyeSample& e : eye_samples_) e.bsdf.prepare(e.frame.to_local(e.wo));
+  worker_->begin(tile.index);
+  spatial_order_ = worker_->exact();
   put_in_order(tile);
   direct_.resize(paths_.count), indirect_.resize(paths_.count);
   fill(direct_, 0, paths_.count, Color(0)), fill(indirect_, 0, paths_.count, Color(0));
-  worker_->begin(tile.index);
   if (!lights_.punctual.empty()) in_chunks(lights_.punctual.size(), [&](EyeRange chunk) { shade_punctual(chunk, statistics); });
   const auto n = static_cast<std::size_t>(pass.light_samples);
   if (!lights_.area.empty()) in_chunks(n, [&](EyeRange chunk) { shade_area(chunk, pass, statistics); });
@@ -101,7 +102,7 @@ void EyeKernel::put_in_order(const Tile& tile) {
 
 template <class Shade>
 void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
-  const std::size_t chunk = std::clamp<std::size_t>(kBatch / per_eye, 1, 1024);
+  const std::size_t chunk = std::clamp<std::size_t>((spatial_order_ ? kExactBatch : kBatch) / per_eye, 1, 1024);
   contributions_.resize(chunk * per_eye);
   weights_.resize(padded(chunk * per_eye) + kLanes);
   for (auto* numbers : {&u0_, &u1_, &u2_}) numbers->resize(padded(chunk * per_eye));

@@ -68,8 +68,8 @@ class EyeKernel {
   const Context& context_;
   bool may_stop_ = false;  ///< inside a tile: nothing of it is in the frame yet
   const EyeLights& lights_;
-  bool spatial_order_;   ///< every query is a ray: neighbours side by side trace fastest
-  float first_segment_;  ///< C_E²
+  bool spatial_order_ = false;  ///< every query of the tile is a ray: neighbours side by side trace fastest
+  float first_segment_;         ///< C_E²
   EyePaths eye_paths_;
   EyeAbsorption absorption_;
   std::unique_ptr<VisibilityWorker> worker_;
