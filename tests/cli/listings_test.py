@@ -168,6 +168,67 @@ class Bench(ProgramTest):
         self.assertIn("kitchen", run.err)
         self.assertEqual(json.loads(run.out)["curves"], [])
 
+    def test_all_parts_of_the_fragments_suite(self):
+        self.ok("bench", "fragments", "--quick", "--view", "builtin:room,content=builtin:spheres", "--size", "64x48", "--threads", 2, "--truth-samples", 128,
+                "--cache-dir", "kept", "--json", "a.json", "--markdown", "a.md", "--html", "a.html", "--strip", "a.png")
+        results = self.json("a.json")
+        self.assertEqual((results["suite"], results["threads"], results["quick"], results["interrupted"]), ("fragments", 2, True, False))
+        table = results["table"][0]
+        self.assertEqual((table["size"], table["truth_samples"]), ([64, 48], 128))
+        rows = {row["name"]: row for row in table["rows"]}
+        ours, monte_carlo = table["rows"][0], rows["Monte Carlo, 64 samples"]
+        self.assertEqual([row["key"] for row in table["rows"]][:4], ["default", "koa", "nichols", "monte-carlo-64"])
+        self.assertEqual(len(rows), 14)
+        for row in rows.values():
+            for key in ("seconds", "speed_up", "l2", "nmse", "flip", "psnr", "rays"):
+                self.assertTrue(math.isfinite(row[key]), (key, row))
+            self.assertLess(row["l2"], 0.3, row)
+            if row is monte_carlo:
+                self.assertIsNone(row["fragments"])
+                continue
+            parts = [row[key] for key in ("test_rays", "confirmation_rays", "level0_rays", "extra_rays")]
+            self.assertEqual(sum(parts), row["rays"], row)
+            self.assertLess(row["level0_share"], 1, row)
+            self.assertTrue(all(seconds >= 0 for seconds in row["stages"].values()) and row["stages"]["visibility"] > 0, row)
+        self.assertLess(ours["rays"], monte_carlo["rays"])
+        self.assertEqual(monte_carlo["speed_up"], 1)
+        self.assertEqual(rows["no confirmation"]["confirmation_rays"], 0)
+        self.assertEqual(rows["no additional samples"]["extra_rays"], 0)
+        self.assertEqual([row["threshold"] for row in table["nichols_sweep"]], [4, 16])
+        curve = results["curve"][0]
+        self.assertEqual([row["samples"] for row in curve["rows"]], [4, 16, 64])
+        errors = [row["l2"] for row in curve["rows"]]
+        self.assertEqual(errors, sorted(errors, reverse=True))
+        self.assertGreater(curve["equal_error"]["ratio"], 0)
+        for part in ("table", "sizes", "interactive"):
+            self.assertEqual(results[part][0]["view"], "builtin:room,content=builtin:spheres")
+        self.assertEqual([row["side"] for row in results["sizes"][0]["rows"]], [1, 3.5])
+        path = results["interactive"][0]
+        self.assertEqual((path["path"], path["frames"]), ("court walk", 6))
+        self.assertGreater(path["frames_per_second"], 0)
+        self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (6 * 32, 2 * 24))
+        page = (self.folder / "a.html").read_text()
+        self.assertGreaterEqual(page.count("<svg"), 2)
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
+        self.assertIn("### Monte Carlo", (self.folder / "a.md").read_text())
+        # The view's own picture, and those of lights of other sizes.
+        self.assertEqual(len(list((self.folder / "kept").iterdir())), 3)
+
+    def test_what_the_fragments_suite_refuses(self):
+        self.fails(2, "bench", "fragment", says="fragments")
+        self.fails(2, "bench", "fragments", "--part", "curves", says="curve")
+        self.fails(2, "bench", "fragments", "--view", "conferense", says="conference")
+        self.fails(2, "bench", "fragments", "--ce", "8", says=("--ce", "visibility-cache"))
+        self.fails(2, "bench", "fragments", "--truth-samples", "0")
+        for part, option in (("interactive", ("--rounds", "2")), ("interactive", ("--cache-dir", "x")), ("table,curve", ("--strip", "a.png"))):
+            self.fails(2, "bench", "fragments", "--part", part, *option, says=(option[0], "--part"))
+        self.fails(2, "bench", "visibility-cache", "--truth-samples", "4", says=("--truth-samples", "fragments"))
+        self.fails(2, "bench", "--rounds", "4", says="fragments")
+        self.assertEqual(self.files(), [])
+        run = self.ok("bench", "fragments", "--view", "conference", "--data", ".", "--json", "-")
+        self.assertIn("conference", run.err)
+        self.assertEqual(json.loads(run.out)["table"], [])
+
 
 if __name__ == "__main__":
     main(globals())

@@ -26,7 +26,9 @@ void measure_view(const BuiltView& view, const BenchPlan& plan, const FragmentBe
   Json& json = results.json;
   if (plan.has("table", view.name)) json["table"].push_back(fragment_table(view, options, results.pictures, context));
   if (plan.has("curve", view.name)) json["curve"].push_back(fragment_curve(view, options, context));
-  if (plan.has("sizes", view.name)) json["sizes"].push_back(fragment_sizes(view, options, context));
+  if (plan.has("sizes", view.name)) {
+    if (Json sizes = fragment_sizes(view, options, context); !sizes.is_null()) json["sizes"].push_back(std::move(sizes));
+  }
   if (plan.has("interactive", view.name)) json["interactive"].push_back(fragment_interactive(view, options, results.strip, context));
 }
 

@@ -11,7 +11,7 @@ nlohmann::ordered_json fragment_table(const BuiltView& view, const FragmentBench
                                       const Context& context);
 /// Time and error of Monte Carlo over its number of samples, and what ours is worth on that scale.
 nlohmann::ordered_json fragment_curve(const BuiltView& view, const FragmentBenchOptions& options, const Context& context);
-/// Error over the size of the light, at constant power.
+/// Error over the size of the light, at constant power; null, with a warning, for scenes without a rectangle.
 nlohmann::ordered_json fragment_sizes(const BuiltView& view, const FragmentBenchOptions& options, const Context& context);
 /// Frames a second along a path of camera and light; a strip of frames unless there is one already.
 nlohmann::ordered_json fragment_interactive(BuiltView view, const FragmentBenchOptions& options, std::optional<ColorImage>& strip,

@@ -41,8 +41,8 @@ Json fragment_sizes(const BuiltView& view, const FragmentBenchOptions& options, 
     if (options.quick && side != 1 && side != 3.5f) continue;
     std::optional<Scene> scene = with_squares(view.world->scene(), side);
     if (!scene) {
-      context.warn(fmt::format("{}: no rectangle to resize; left out", view.name));
-      break;
+      context.warn(fmt::format("{}: no rectangle to resize; left out of sizes", view.name));
+      return {};
     }
     BuiltView sized = view;
     sized.world = World::edit(*view.world, std::move(*scene), context);
@@ -57,7 +57,7 @@ Json fragment_sizes(const BuiltView& view, const FragmentBenchOptions& options, 
   }
   return {{"view", view.name},
           {"size", {view.size_px.x, view.size_px.y}},
-          {"largest_deviation", errors.empty() ? Json() : Json(largest_deviation(errors))},
+          {"largest_deviation", largest_deviation(errors)},
           {"rows", std::move(rows)}};
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bench/fragments/fragment_bench.h"
@@ -13,22 +13,27 @@ namespace {
 using Json = nlohmann::ordered_json;
 using cell::count, cell::fixed, cell::percent, cell::scientific, cell::seconds, cell::text;
 
-// The method's stages in the order in which they run; Monte Carlo has none of them.
-constexpr std::array<const char*, 6> kStages = {"primary rays", "geometry", "visibility", "upsampling", "shading", "film"};
+// The method's stages in the order in which they run; others follow.
+std::vector<std::string> stages_of(const Json& rows) {
+  std::vector<std::string> names = {"primary rays", "geometry", "visibility", "upsampling", "shading", "film"};
+  for (const Json& row : rows) {
+    if (!row["fragments"].is_number()) continue;
+    for (const auto& [name, seconds] : row["stages"].items()) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
 
 std::string place(const Json& part) { return text(part["view"]) + ", " + cell::size(part["size"]); }
-
-std::string stage(const Json& row, const char* name) {
-  return row["stages"].contains(name) ? seconds(row["stages"][name]) : seconds(Json());
-}
 
 BenchTable picture_table(const Json& view) {
   BenchTable table{
       .title = "Fragments, rays, errors: " + place(view),
       .note = fmt::format("Rays in millions: of refinement tests, of confirmations, of single pixels, of additional samples, and "
-                          "all. Seconds are those of the whole frame, primary rays included: the median of {} rounds. Errors "
+                          "all. Seconds are those of the whole frame, primary rays included: the median of {} round{}. Errors "
                           "against {} samples. {} triangles.",
-                          text(view["rounds"]), text(view["truth_samples"]), count(view["triangles"])),
+                          text(view["rounds"]), view["rounds"] == 1 ? "" : "s", text(view["truth_samples"]), count(view["triangles"])),
       .header = {"picture", "fragments", "single pixels", "test", "confirm", "pixel", "extra", "all", "s", "speed-up", "l2", "nmse", "FLIP",
                  "PSNR, dB"}};
   const auto millions = [](const Json& rays) { return rays.is_number() ? fixed(rays.get<double>() * 1e-6, 2) : fixed(rays, 2); };
@@ -42,11 +47,12 @@ BenchTable picture_table(const Json& view) {
 
 BenchTable stage_table(const Json& view) {
   BenchTable table{.title = "Stages: " + place(view), .note = "CPU seconds, all threads together.", .header = {"picture"}};
-  for (const char* name : kStages) table.header.emplace_back(name);
+  const std::vector<std::string> stages = stages_of(view["rows"]);
+  table.header.insert(table.header.end(), stages.begin(), stages.end());
   for (const Json& row : view["rows"]) {
     if (!row["fragments"].is_number()) continue;
     table.rows.push_back({text(row["name"])});
-    for (const char* name : kStages) table.rows.back().push_back(stage(row, name));
+    for (const std::string& name : stages) table.rows.back().push_back(cell::seconds(row["stages"].value(name, Json())));
   }
   return table;
 }
@@ -90,7 +96,7 @@ std::vector<BenchTable> curve_tables(const Json& views) {
                          fixed(equal["interpolated_samples"], 1), fixed(equal["interpolated_ratio"], 2), fixed(view["against_64"], 2),
                          fixed(view["equal_time_db"], 1)});
     BenchTable table{.title = "Monte Carlo: " + place(view),
-                     .note = fmt::format("The median of {} rounds, by turns with ours; errors against {} samples.", text(view["rounds"]),
+                     .note = fmt::format("By turns with ours, rounds: {}; errors against {} samples.", text(view["rounds"]),
                                          text(view["truth_samples"])),
                      .header = {"samples", "rays, millions", "s", "l2", "nmse", "FLIP", "PSNR, dB"}};
     const auto add = [&](const std::string& name, const Json& row) {
