@@ -12,14 +12,18 @@ FragmentCandidate fragments_nichols(int threshold) {
 
 const std::vector<FragmentCandidate>& fragment_ablations() {
   static const std::vector<FragmentCandidate> table = {
-      {"fixed variance", {"upsample=rbf-fixed"}},
+      {"radial basis functions", {"upsample=rbf"}},
+      {"the same, fixed variance", {"upsample=rbf-fixed"}},
       {"quadrant corners", {"upsample=quad4"}},
       {"always four children", {"subdivide_twice=false"}},
       {"no additional samples", {"extra_samples=false"}},
       {"strict threshold", {"strict_threshold=true"}},
+      {"64 rays a pixel", {"level0_rays=64"}},
       {"no early out", {"early_out=off"}},
       {"probes averaged", {"probes=off"}},
       {"no confirmation", {"confirm=0"}},
+      {"borders not refined again", {"borders=0"}},
+      {"no more rays in penumbrae", {"penumbra_level=8"}},
       {"not smoothed", {"smooth=off"}},
       {"irradiance interpolated", {"signal=irradiance"}},
   };

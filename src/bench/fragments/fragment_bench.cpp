@@ -1,5 +1,7 @@
 #include "bench/fragments/fragment_bench.h"
 
+#include <fmt/format.h>
+
 #include "base/core/error.h"
 #include "bench/bench_plan.h"
 #include "bench/fragments/aims.h"
@@ -19,6 +21,17 @@ const std::vector<BenchPart>& part_table() {
       {"interactive", {"sponza-court"}},
   };
   return table;
+}
+
+/// False, with a warning, for a view with lights or materials that the method does not know: the others are worth measuring.
+bool supported(const BuiltView& view, const Context& context) {
+  try {
+    check_supported(find_method("fragments"), view.world->scene());
+    return true;
+  } catch (const Error& error) {
+    context.warn(fmt::format("{}: left out: {}", view.name, error.what()));
+    return false;
+  }
 }
 
 void measure_view(const BuiltView& view, const BenchPlan& plan, const FragmentBenchOptions& options, BenchResults& results,
@@ -49,8 +62,8 @@ BenchResults run_fragment_bench(const FragmentBenchOptions& options, const Conte
   try {
     for (const std::string& name : plan.views()) {
       context.check_cancelled();
-      if (const std::optional<BuiltView> view = load_built_view(name, options.data, options.size_px, options.quick, context))
-        measure_view(*view, plan, options, results, context);
+      const std::optional<BuiltView> view = load_built_view(name, options.data, options.size_px, options.quick, context);
+      if (view && supported(*view, context)) measure_view(*view, plan, options, results, context);
     }
   } catch (const Error& error) {
     // What hours have measured is not thrown away.
