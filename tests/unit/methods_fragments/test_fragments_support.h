@@ -1,6 +1,7 @@
 // Scenes with soft shadows, and the stages of the method one by one.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "methods/fragments/area_light.h"
 #include "methods/fragments/camera_pass.h"
 #include "methods/fragments/pyramid.h"
+#include "methods/fragments/refiner.h"
 #include "support/studio.h"
 #include "unit/trace/trace_scenes.h"
 #include "visibility/visibility.h"
@@ -71,6 +73,29 @@ inline Scene box_on_floor() {
   return scene;
 }
 
+/// A plate at height 2.2 whose edge runs through (0, 2.2, 0) in direction `angle`, between a floor and a lamp of half width `half`; the
+/// camera looks down from below it. Floor and lamp are so large that nothing else is in the picture.
+struct EdgeScene {
+  static constexpr float kPlate = 2.2f, kLamp = 4;
+  static constexpr float kGrazing = 3e-5f;  // rounding of rays and of what they hit
+  float angle, half;
+  Vec3 across() const { return {std::cos(angle), 0, std::sin(angle)}; }
+  Scene scene() const {
+    Scene scene = bare_floor(Occluder::none);
+    scene.cameras = {camera_at({0, 2, 0}, {0, 0, 0}, 1.2f)};
+    const Vec3 n = across(), along{-n.z, 0, n.x}, p{0, kPlate, 0};
+    place(scene, make_mesh({p - 40.f * along, p + 40.f * along, p + 40.f * (along - n), p - 40.f * (along + n)}, {{0, 1, 2}, {0, 2, 3}}),
+          MaterialId(0));
+    scene.lights.push_back({.name = "lamp", .shape = lamp({0, kLamp, 0}, half), .node = {}});
+    return scene;
+  }
+  /// How far on the free side of the edge the segment from a point of the floor to one of the lamp passes the plate's height.
+  float clearance(const Vec3& floor, const Vec3& light) const {
+    const float t = (kPlate - floor.y) / (light.y - floor.y);
+    return glm::dot(floor + t * (light - floor), across());
+  }
+};
+
 /// What stands before the refinement of a picture.
 struct Stage {
   Shot shot;
@@ -88,7 +113,7 @@ struct Stage {
     visibility->begin_pass({0, 0}, Context());
     g.resize(size_px.x, size_px.y);
     radiance.resize(g.kind.size());
-    CameraPass camera(*shot.world, view, 0, 64, false, visibility.get());
+    CameraPass camera(*shot.world, view, 0, 64, CameraPass::Sampling::general, visibility.get());
     for (std::size_t root = 0; root < g.root_count(); ++root) camera.render(root, 0, g, radiance, statistics);
     lights = area_lights(shot.world->lights(), 16);
   }
@@ -99,10 +124,36 @@ struct Stage {
     pyramid.refine(g, g.root(root), options, fragments);
     return fragments;
   }
+  std::vector<std::vector<Fragment>> geometry_of_all(const GeometryOptions& options = {}) const {
+    std::vector<std::vector<Fragment>> fragments;
+    for (std::size_t root = 0; root < g.root_count(); ++root) fragments.push_back(geometry(root, options));
+    return fragments;
+  }
   bool interpolable(int x, int y) const {
     const PixelKind kind = g.kind[g.at(x, y)];
     return kind == PixelKind::diffuse || kind == PixelKind::analytic;
   }
 };
+
+/// Fragments that the levels of a signal describe: squares at multiples of their width whose pixels agree, and that hold nothing but
+/// surfaces. Empty if they do not.
+inline std::vector<Fragment> fragments_of(const Stage& stage, const LightSignal& signal) {
+  std::vector<Fragment> fragments;
+  const GBuffer& g = stage.g;
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      if (!stage.interpolable(x, y)) continue;
+      const Fragment f{static_cast<std::uint16_t>(x & -(1 << signal.level[g.at(x, y)])),
+                       static_cast<std::uint16_t>(y & -(1 << signal.level[g.at(x, y)])), signal.level[g.at(x, y)]};
+      if (f.level > kRootLevel || !stage.interpolable(f.x, f.y) || signal.level[g.at(f.x, f.y)] != f.level) return {};
+      if (f.x != x || f.y != y) continue;
+      for (int j = y; j < std::min(y + f.width(), g.height); ++j)
+        for (int i = x; i < std::min(x + f.width(), g.width); ++i)
+          if (signal.level[g.at(i, j)] != f.level || !stage.interpolable(i, j)) return {};
+      fragments.push_back(f);
+    }
+  }
+  return fragments;
+}
 
 }  // namespace sightline::test
