@@ -31,6 +31,7 @@ void FragmentsMethod::check(const Scene&, const RenderJob& job) const {
 void FragmentsMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                   const Context& context) const {
   FragmentPicture picture(job, *job.view, job.settings.as<FragmentsSettings>(), context);
+  picture.expect(range.count());
   for (std::uint32_t sample = range.begin; sample < range.end; ++sample) {
     // Whole pictures: tiles are done together.
     bool missing = false;
@@ -38,7 +39,6 @@ void FragmentsMethod::render_pass(const RenderJob& job, SampleRange range, Frame
     if (!missing) continue;
     job.visibility->begin_pass({sample, 0}, context);
     picture.render(sample, frame, statistics);
-    context.report("render", static_cast<double>(sample + 1 - range.begin), static_cast<double>(range.count()));
   }
 }
 

@@ -72,7 +72,14 @@ void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, B
     local.stage_seconds[stage] += seconds_since(start);
     const std::lock_guard lock(mutex);
     statistics += local;
+    steps_done_ += static_cast<double>(end - begin);
+    context_.report("render", steps_done_, steps_);
   });
+}
+
+void FragmentPicture::expect(std::uint32_t samples) {
+  const std::size_t stages = 2 + (lights_.empty() ? 0 : 1) + lights_.size() * (options_.smooth ? 4u : 3u);
+  steps_ = static_cast<double>(samples) * static_cast<double>(stages * g_.root_count()), steps_done_ = 0;
 }
 
 void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics& statistics) {

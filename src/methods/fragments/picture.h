@@ -24,6 +24,8 @@ class FragmentPicture {
  public:
   FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context);
 
+  /// How many samples will be asked for: for the progress that is reported.
+  void expect(std::uint32_t samples);
   /// Adds picture sample `sample` to the frame.
   void render(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
 
@@ -37,6 +39,7 @@ class FragmentPicture {
   void write_tile(const Tile& tile, std::uint32_t sample, Frame& frame) const;
   void write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const;
 
+  double steps_ = 0, steps_done_ = 0;
   const RenderJob& job_;
   const View& view_;
   const Context& context_;
