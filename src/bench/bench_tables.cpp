@@ -49,15 +49,23 @@ std::string size(const Json& json) { return fmt::format("{}x{}", json[0].get<int
 
 }  // namespace cell
 
+namespace {
+
+// As many digits as tell a figure from its aim.
+std::string number_of_any_size(const Json& value) {
+  const double size = std::abs(cell::number(value));
+  return size > 0 && size < 1e-3 ? cell::scientific(value) : cell::fixed(value, size < 1 ? 4 : 2);
+}
+
+}  // namespace
+
 BenchTable aims_table(const Json& aims) {
   BenchTable table{.title = "Aims",
                    .note = "For pictures of the views' own size; small pictures have more edges and fewer pixels to share.",
                    .header = {"figure", "measured", "aim", "met"}};
   for (const Json& row : aims) {
     const bool is_share = row["percent"].get<bool>();
-    const auto shown = [&](const Json& value) {
-      return is_share ? cell::percent(value) : cell::fixed(value, cell::number(value) < 1 ? 4 : 2);
-    };
+    const auto shown = [&](const Json& value) { return is_share ? cell::percent(value) : number_of_any_size(value); };
     table.rows.push_back({cell::text(row["figure"]), shown(row["measured"]),
                           (row["at_most"].get<bool>() ? "at most " : "at least ") + shown(row["aim"]),
                           row["met"].get<bool>() ? "yes" : "no"});

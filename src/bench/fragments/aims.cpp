@@ -26,7 +26,7 @@ void of_curve(const Json& curve, BenchAims& aims) {
     if (name != view.view) continue;
     aims.at_least(name + ": time of Monte Carlo with no more error, over ours", curve["equal_error"]["ratio"], view.equal_error);
     aims.at_least(name + ": time of Monte Carlo with 64 samples, over ours", curve["against_64"], view.against_64);
-    aims.at_most(name + ": l2, %", curve["ours"]["l2"], kL2, kPercent);
+    aims.at_most(name + ": l2", curve["ours"]["l2"], kL2);
     aims.at_most(name + ": FLIP", curve["ours"]["flip"], kFlip);
     aims.at_least(name + ": dB over Monte Carlo in the same time", curve["equal_time_db"], view.equal_time_db);
   }

@@ -21,7 +21,7 @@ void add_maps(const BuiltView& view, const std::string& name, const RenderReques
   const std::string title = view.name + ", " + name;
   pictures.push_back({title, fmt::format("{:.3f} s", shot.seconds), thumbnail(shot.image, kPageWidth), exposure});
   if (request.method == "fragments")
-    pictures.push_back({title + ", fragments", "from single pixels (black) to squares of 128 (pale)",
+    pictures.push_back({title + ", levels", "from single pixels (black) to squares of 128 (pale)",
                         thumbnail(level_map(view, request, context), kPageWidth), 0.f});
   pictures.push_back({title + ", error", "nine times the difference from the reference, exposed as the picture",
                       thumbnail(error_map(truth, shot.image), kPageWidth), exposure});
