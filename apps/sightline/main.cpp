@@ -1,10 +1,10 @@
 // The program: parses the command line, runs one command, turns failures into one line and an exit code.
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>

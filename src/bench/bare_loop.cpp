@@ -303,7 +303,7 @@ BareResult over_tiles(const BareJob& job, const Context& context, Block block) {
   BareResult total;
   std::mutex mutex;
   const auto start = std::chrono::steady_clock::now();
-  parallel_for(context, static_cast<std::size_t>(tiles_x * tiles_y), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t tile = begin; tile < end; ++tile) {
       BareResult local;
       const int x0 = static_cast<int>(tile) % tiles_x * 32, y0 = static_cast<int>(tile) / tiles_x * 32;

@@ -33,7 +33,8 @@ constexpr const char* kForest = "environments/phalzer_forest_01_1k.hdr";
 std::vector<std::string> rows_of_points() {
   std::vector<std::string> lights;
   for (int i = 0; i < 24; ++i) {
-    const double x = -14 + 4 * (i / 3), y = i % 2 == 0 ? 2.5 : 6.5, z = -5.5 + 5.5 * (i % 3);
+    const int column = i / 3;
+    const double x = -14 + 4 * column, y = i % 2 == 0 ? 2.5 : 6.5, z = -5.5 + 5.5 * (i % 3);
     lights.push_back(fmt::format("{},{},{} 20,20,20", x, y, z));
   }
   return lights;

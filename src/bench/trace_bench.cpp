@@ -89,9 +89,9 @@ RaySets make_rays(const World& world, const View& view, const RectangleLight& li
   for (int by = 0; by + 4 <= view.height(); by += 4) {
     for (int bx = 0; bx + 4 <= view.width(); bx += 4) {
       for (int i = 0; i < 16; ++i) {
+        const int x = bx + i % 4, y = by + i / 4;
         Ray ray;
-        view.ray_through(static_cast<float>(bx + i % 4) + 0.5f, static_cast<float>(by + i / 4) + 0.5f, Vec2(0.5f), ray.origin,
-                         ray.direction);
+        view.ray_through(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, Vec2(0.5f), ray.origin, ray.direction);
         push(sets.primary, ray);
       }
     }

@@ -80,8 +80,9 @@ void View::primary_rays(const std::uint32_t* pixels, const float* fx, const floa
   }
   const std::uint32_t width = static_cast<std::uint32_t>(size_px_.x);
   for (std::size_t i = 0; i < count; ++i) {
-    const float x = static_cast<float>(pixels[i] % width) + 0.5f + filter_.offset(fx[i]);
-    const float y = static_cast<float>(pixels[i] / width) + 0.5f + filter_.offset(fy[i]);
+    const std::uint32_t column = pixels[i] % width, row = pixels[i] / width;
+    const float x = static_cast<float>(column) + 0.5f + filter_.offset(fx[i]);
+    const float y = static_cast<float>(row) + 0.5f + filter_.offset(fy[i]);
     Vec3 origin, direction;
     ray_through(x, y, Vec2(lu[i], lv[i]), origin, direction);
     rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;

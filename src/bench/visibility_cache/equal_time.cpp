@@ -64,6 +64,7 @@ Json cache_equal_time(const CacheView& view, const CacheBenchOptions& options, c
     rivals.push_back({"nee++, fewer light samples", {.visibility = "nee++", .settings = {"pass_spp=1"}}, true});
   }
   std::vector<Fitted> fitted;
+  fitted.reserve(rivals.size());
   for (const Rival& rival : rivals) fitted.push_back(fit(view, rival, spp, ours.seconds, context));
 
   // Other samples than those compared, which may be up to kMostTimes as many.

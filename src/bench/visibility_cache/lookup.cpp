@@ -59,6 +59,7 @@ void touch(const QueryBatch& batch) {
 /// As many queries as were missed, from all over the batch.
 std::vector<std::uint32_t> spread_out(const QueryBatch& batch, std::uint64_t count) {
   std::vector<std::uint32_t> which;
+  which.reserve(count);
   for (std::uint64_t k = 0; k < count; ++k)
     which.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(batch.size - 1, k * batch.size / count)));
   return which;

@@ -155,12 +155,13 @@ void check_part(const ExrPartHeader& part, std::size_t declared_chunks, std::siz
   double chunks = 0, chunk_pixels = 0;
   if (tiled) {
     if (part.tile_width < 1 || part.tile_height < 1) throw input_error("tiles have no size");
-    const double across = static_cast<double>((part.width() - 1) / part.tile_width + 1);
-    chunks = across * static_cast<double>((part.height() - 1) / part.tile_height + 1);
+    const std::int64_t across = (part.width() - 1) / part.tile_width + 1, down = (part.height() - 1) / part.tile_height + 1;
+    chunks = static_cast<double>(across) * static_cast<double>(down);
     // One row of tiles is held at a time.
-    chunk_pixels = across * static_cast<double>(part.tile_width) * static_cast<double>(part.tile_height);
+    chunk_pixels = static_cast<double>(across) * static_cast<double>(part.tile_width) * static_cast<double>(part.tile_height);
   } else {
-    chunks = static_cast<double>((part.height() - 1) / compression.rows_per_chunk + 1);
+    const std::int64_t down = (part.height() - 1) / compression.rows_per_chunk + 1;
+    chunks = static_cast<double>(down);
     chunk_pixels = static_cast<double>(part.width()) * compression.rows_per_chunk;
   }
   // The table of chunks takes 8 bytes each.

@@ -68,7 +68,9 @@ void read_pixels(Imf::InputPart& input, const ExrPartHeader& part, LayeredImage&
       const std::size_t row_bytes = width * sizeof(float);
       const std::int64_t origin =
           (part.y_min + y) * static_cast<std::int64_t>(row_bytes) + part.x_min * static_cast<std::int64_t>(sizeof(float));
-      char* base = reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(rows[c].data()) - static_cast<std::uintptr_t>(origin));
+      const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(rows[c].data()) - static_cast<std::uintptr_t>(origin);
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): a pointer may not leave its array, an integer may.
+      char* base = reinterpret_cast<char*>(address);
       target.insert(image.channels[c].name, Imf::Slice(Imf::FLOAT, base, sizeof(float), row_bytes));
     }
     input.setFrameBuffer(target);

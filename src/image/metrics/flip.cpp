@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "image/metrics/convolve.h"
@@ -111,7 +112,7 @@ Features find_features(const Plane& achromatic, double pixels_per_degree) {
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   std::vector<float> smooth = gaussian_kernel(sigma, radius), slope = smooth, curvature = smooth;
   for (int x = -radius; x <= radius; ++x) {
-    const auto k = static_cast<std::size_t>(x + radius);
+    const auto k = static_cast<std::size_t>(std::ptrdiff_t{x} + radius);
     slope[k] *= static_cast<float>(-x);
     curvature[k] *= static_cast<float>(x * x / (sigma * sigma) - 1);
   }

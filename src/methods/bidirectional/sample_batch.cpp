@@ -15,7 +15,8 @@ int blocks_across(int pixels) { return (pixels + kBlockSize - 1) / kBlockSize; }
 }  // namespace
 
 std::vector<BatchRange> batches_of(const Tile& tile, SampleRange samples, std::size_t capacity) {
-  const auto blocks = static_cast<std::size_t>(blocks_across(tile.x1 - tile.x0) * blocks_across(tile.y1 - tile.y0));
+  const auto blocks =
+      static_cast<std::size_t>(blocks_across(tile.x1 - tile.x0)) * static_cast<std::size_t>(blocks_across(tile.y1 - tile.y0));
   const std::size_t groups = std::max<std::size_t>(1, capacity / kLanes);
   const auto samples_a_batch = static_cast<std::uint32_t>(std::min<std::size_t>(samples.count(), groups));
   const std::size_t blocks_a_batch = std::max<std::size_t>(1, groups / std::max(1u, samples_a_batch));
