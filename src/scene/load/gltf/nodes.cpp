@@ -149,7 +149,9 @@ void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes)
   std::size_t skinned = 0;
   std::vector<std::pair<std::size_t, NodeId>> in_order(nodes.begin(), nodes.end());
   std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  for (const auto& [gltf_node, id] : in_order) {
+  for (const auto& entry : in_order) {
+    const std::size_t gltf_node = entry.first;
+    const NodeId id = entry.second;
     const JsonView json = import.document.element("nodes", gltf_node);
     if (const std::optional<JsonView> camera = json.find("camera")) add_camera(import, *camera, id);
     if (const std::optional<JsonView> light = json.extension("KHR_lights_punctual")) add_light(import, *light, id);

@@ -13,20 +13,19 @@ int hex_digit(char c) {
   return -1;
 }
 
-constexpr std::array<std::int8_t, 256> make_base64_table() {
-  std::array<std::int8_t, 256> table{};
+constexpr std::array<int, 256> make_base64_table() {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<int, 256> table{};
   table.fill(-1);
-  for (int i = 0; i < 26; ++i) {
-    table[static_cast<std::size_t>('A' + i)] = static_cast<std::int8_t>(i);
-    table[static_cast<std::size_t>('a' + i)] = static_cast<std::int8_t>(26 + i);
-  }
-  for (int i = 0; i < 10; ++i) table[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(52 + i);
-  table['+'] = table['-'] = 62;
-  table['/'] = table['_'] = 63;
+  int value = 0;
+  for (const char digit : digits) table[static_cast<unsigned char>(digit)] = value++;
+  // Texts made for addresses write the last two differently.
+  table['-'] = table['+'];
+  table['_'] = table['/'];
   return table;
 }
 
-constexpr std::array<std::int8_t, 256> kBase64 = make_base64_table();
+constexpr std::array<int, 256> kBase64 = make_base64_table();
 
 }  // namespace
 

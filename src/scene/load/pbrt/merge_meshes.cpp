@@ -8,7 +8,7 @@
 namespace sightline::pbrt {
 namespace {
 
-Mesh join(const std::vector<const Mesh*>& parts) {
+Mesh join(const std::vector<Mesh*>& parts) {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uvs;
   std::vector<UVec3> triangles;
@@ -41,11 +41,11 @@ std::vector<Mesh> merge_meshes(std::vector<Mesh> parts) {
   constexpr std::size_t kMostParts = std::numeric_limits<std::uint16_t>::max();
   constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max();
   struct Group {
-    std::vector<const Mesh*> parts;
+    std::vector<Mesh*> parts;
     std::size_t vertices = 0;
   };
   std::map<std::pair<bool, bool>, std::vector<Group>> groups;
-  for (const Mesh& part : parts) {
+  for (Mesh& part : parts) {
     std::vector<Group>& alike = groups[{part.normals.empty(), part.uvs.empty()}];
     if (alike.empty() || alike.back().parts.size() == kMostParts || alike.back().vertices + part.positions.size() >= kMostVertices) {
       alike.emplace_back();
@@ -55,7 +55,7 @@ std::vector<Mesh> merge_meshes(std::vector<Mesh> parts) {
   }
   std::vector<Mesh> result;
   for (const auto& [attributes, alike] : groups) {
-    for (const Group& group : alike) result.push_back(group.parts.size() == 1 ? *group.parts.front() : join(group.parts));
+    for (const Group& group : alike) result.push_back(group.parts.size() == 1 ? std::move(*group.parts.front()) : join(group.parts));
   }
   return result;
 }

@@ -219,6 +219,7 @@ void Builder::instance(const std::string& name, const GraphicsState& state, cons
   const auto found = object_names_.find(name);
   if (found == object_names_.end()) {
     std::vector<std::string> known;
+    known.reserve(object_names_.size());
     for (const auto& [known_name, slot] : object_names_) known.push_back(known_name);
     const std::string nearest = nearest_name(name, known);
     warn(place,
