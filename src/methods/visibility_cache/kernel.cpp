@@ -92,7 +92,8 @@ void EyeKernel::put_in_order(const Tile& tile) {
     const int sample = group % static_cast<int>(paths_.samples), block = group / static_cast<int>(paths_.samples);
     const int blocks_x = (size.x + 3) / 4;
     const int x = block % blocks_x * 4 + lane % 4, y = block / blocks_x * 4 + lane / 4;
-    return static_cast<std::size_t>(sample) * pixels + rank_[static_cast<std::size_t>(y * size.x + x)];
+    const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(sample) * pixels + rank_[pixel];
   };
   bucket_.assign(pixels * paths_.samples + 1, 0);
   for (const EyeSample& eye : eye_samples_) ++bucket_[bucket_of(eye) + 1];
