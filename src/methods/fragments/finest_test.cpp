@@ -34,7 +34,7 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
   const std::uint32_t first = options_.early_out ? std::max(options_.rays / 4, 16u) : options_.rays;
   trace(g, light, pixels, open_, sample, 0, std::min(first, options_.rays), ratio, statistics);
   if (first < options_.rays) {
-    std::erase_if(open_, [&](std::uint32_t i) { return sums_[i].seen == 0 || sums_[i].seen == sums_[i].asked; });
+    close_saturated(g, pixels);
     trace(g, light, pixels, open_, sample, first, options_.rays - first, ratio, statistics);
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -48,6 +48,30 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
     const bool stopped = first < options_.rays && (s.seen == 0 || s.seen == s.asked) && !std::binary_search(open_.begin(), open_.end(), i);
     for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = s.irradiance[c] * (stopped ? scale : 1.f);
   }
+}
+
+// Pixels whose first rays agree are done, but for those beside others in penumbra: there, all or nothing is mostly chance.
+void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels) {
+  const auto saturated = [&](std::uint32_t i) { return sums_[i].seen == 0 || sums_[i].seen == sums_[i].asked; };
+  mixed_.resize(g.element_count());
+  for (const std::uint32_t i : open_) mixed_[pixels[i]] = !saturated(i);
+  const auto stride = static_cast<std::ptrdiff_t>(g.stride), count = static_cast<std::ptrdiff_t>(g.element_count());
+  const auto beside_mixed = [&](std::uint32_t i) {
+    for (std::ptrdiff_t dy = -1; dy <= 1; ++dy) {
+      for (std::ptrdiff_t dx = -1; dx <= 1; ++dx) {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(pixels[i]) + dy * stride + dx;
+        if (at >= 0 && at < count && mixed_[static_cast<std::size_t>(at)]) return true;
+      }
+    }
+    return false;
+  };
+  const std::size_t before = open_.size();
+  closed_.clear();
+  for (std::size_t k = 0; k < before; ++k) {
+    if (saturated(open_[k]) && !beside_mixed(open_[k])) closed_.push_back(open_[k]);
+  }
+  for (const std::uint32_t i : open_) mixed_[pixels[i]] = 0;
+  std::erase_if(open_, [&](std::uint32_t i) { return std::binary_search(closed_.begin(), closed_.end(), i); });
 }
 
 void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels,

@@ -32,12 +32,15 @@ class FinestTest {
   /// visible share for one channel, irradiance / pi for three.
   void test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, int channels,
             std::array<std::vector<float>, 3>& values, PassStatistics& statistics);
+  /// How many questions pixel `i` of the last test has asked; exact visibility traces as many rays.
+  std::uint32_t asked(std::size_t i) const { return sums_[i].asked; }
 
  private:
   /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
   void trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which,
              std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
 
+  void close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels);
   FinestTerms weigh_by_lobe(const Receiver& receiver, const FinestRun& run);
 
   struct Sums {
@@ -53,7 +56,8 @@ class FinestTest {
   std::uint64_t seed_;
   std::unique_ptr<VisibilityWorker> worker_;
   std::vector<Sums> sums_;
-  std::vector<std::uint32_t> open_;
+  std::vector<std::uint32_t> open_, closed_;
+  std::vector<std::uint8_t> mixed_;  ///< laid out as the GBuffer; 0 between calls
   Vec3Batch position_;
   AlignedVector<std::uint32_t> key_, index_, entry_;
   AlignedVector<float> u0_, u1_, selection_, term_;

@@ -58,7 +58,7 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.extra_samples = s.extra_samples && o.refine == FragmentOptions::Refine::probes;
   o.confirm = s.confirm >= 0 ? s.confirm : ours ? 1 : 0;
   o.penumbra_level = s.penumbra_level >= 0 ? s.penumbra_level : ours ? 2 : 8;
-  o.border_rounds = o.ratio ? (s.borders >= 0 ? s.borders : ours ? 2 : 0) : 0;
+  o.border_rounds = o.ratio ? (s.borders >= 0 ? s.borders : ours ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
   return o;
 }

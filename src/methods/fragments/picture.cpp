@@ -23,26 +23,29 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 void count_refinement(const RefinementCounts& before, const RefinementCounts& after, PassStatistics& statistics) {
   const auto count = [&](const char* name, std::uint64_t RefinementCounts::* member) {
-    statistics.method_statistics[name] += static_cast<double>(after.*member - before.*member);
+    statistics.method_statistics[name] += static_cast<double>(after.*member) - static_cast<double>(before.*member);
   };
   count("fragments", &RefinementCounts::fragments), count("level0_fragments", &RefinementCounts::finest);
   count("test_rays", &RefinementCounts::test_rays), count("confirmation_rays", &RefinementCounts::confirm_rays);
-  count("level0_rays", &RefinementCounts::finest_rays), count("extra_rays", &RefinementCounts::extra_rays);
-  count("extra_samples", &RefinementCounts::extra_samples);
+  count("level0_rays", &RefinementCounts::finest_rays), count("penumbra_rays", &RefinementCounts::penumbra_rays);
+  count("extra_rays", &RefinementCounts::extra_rays), count("extra_samples", &RefinementCounts::extra_samples);
 }
 
 }  // namespace
 
 FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context)
-    : job_(job), view_(view), context_(context), settings_(settings), options_(resolve(settings)) {
+    : job_(job), view_(view), context_(context), settings_(settings), options_(resolve(settings)), map_(settings.show) {
   const World& world = *job.world;
   if (job.light_samples > 0) options_.finest.rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
   if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
   const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);
-  for (const AreaLight& light : lights_) points_.push_back(light_points(world.lights(), light, rays, context.seed));
+  for (const AreaLight& light : lights_) {
+    const bool blue = settings.jitter == FragmentsSettings::Jitter::blue && !neighbours;
+    points_.push_back(light_points(world.lights(), light, rays, context.seed, blue ? PointJitter::blue : PointJitter::hash));
+  }
   allocate();
-  fragments_.resize(g_.root_count());
+  fragments_.resize(g_.root_count()), progress_.resize(g_.root_count());
   const auto threads = static_cast<std::size_t>(context.thread_count());
   cameras_.resize(threads), refiners_.resize(threads), pyramids_.resize(threads), composers_.resize(threads);
 }
@@ -78,7 +81,8 @@ void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, B
 }
 
 void FragmentPicture::expect(std::uint32_t samples) {
-  const std::size_t stages = 2 + (lights_.empty() ? 0 : 1) + lights_.size() * (options_.smooth ? 4u : 3u);
+  const std::size_t stages = 2 + (lights_.empty() ? 0 : 1) +
+                             lights_.size() * ((options_.smooth ? 4u : 3u) + 2u * static_cast<std::size_t>(options_.border_rounds));
   steps_ = static_cast<double>(samples) * static_cast<double>(stages * g_.root_count()), steps_done_ = 0;
 }
 
@@ -94,16 +98,21 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
                                             job_.visibility);
     camera->render(root, sample, g_, radiance_, local);
   });
+  if (settings_.show != FragmentsSettings::Show::picture) map_.begin(g_);
   if (!lights_.empty()) {
     for_roots("geometry", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
       fragments_[root].clear();
       pyramids_[thread].build(g_, g_.root(root), options_.geometry);
+      if (map_.wants_curvature()) map_.set_geometry(g_, g_.root(root), pyramids_[thread], options_.geometry);
       pyramids_[thread].refine(g_, g_.root(root), options_.geometry, fragments_[root]);
     });
   }
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     for (std::unique_ptr<Refiner>& r : refiners_) {
-      if (!r) r = std::make_unique<Refiner>(*job_.world, view_, *job_.visibility, options_, context_.seed);
+      if (!r) {
+        r = std::make_unique<Refiner>(*job_.world, view_, *job_.visibility, options_, context_.seed);
+        if (map_.watches_tests()) r->watch(map_);
+      }
       r->set_light(lights_[l], points_[l]);
     }
     render_light(lights_[l], sample, statistics);
@@ -114,7 +123,10 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
 void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics) {
   signal_.resize(g_, options_.ratio && light.analytic ? 1 : 3);
   if (options_.refine == FragmentOptions::Refine::neighbours) {
-    if (!nichols_) nichols_ = std::make_unique<NicholsRefiner>(view_, *job_.visibility, options_, context_);
+    if (!nichols_) {
+      nichols_ = std::make_unique<NicholsRefiner>(view_, *job_.visibility, options_, context_);
+      if (map_.watches_tests()) nichols_->watch(map_);
+    }
     const LightPoints& points = points_[static_cast<std::size_t>(&light - lights_.data())];
     count_refinement({}, nichols_->refine(g_, fragments_, light, points, refiners_, signal_, statistics), statistics);
     return upsample_light(light, statistics);
@@ -122,10 +134,30 @@ void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample,
   for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
     Refiner& refiner = *refiners_[thread];
     const RefinementCounts before = refiner.counts();
-    refiner.refine(g_, root, fragments_[root], sample, signal_, local);
+    refiner.refine(g_, root, fragments_[root], sample, signal_, progress_[root], local);
     count_refinement(before, refiner.counts(), local);
   });
+  refine_borders(sample, statistics);
   upsample_light(light, statistics);
+}
+
+// Tiles look at each other's signals between the rounds, and never while they are written.
+void FragmentPicture::refine_borders(std::uint32_t sample, PassStatistics& statistics) {
+  for (int round = 0; round < options_.border_rounds && signal_.channels == 1; ++round) {
+    const auto in_turn = [&](auto step) {
+      for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
+        Refiner& refiner = *refiners_[thread];
+        const RefinementCounts before = refiner.counts();
+        step(refiner, root, local);
+        count_refinement(before, refiner.counts(), local);
+      });
+    };
+    in_turn([&](Refiner& refiner, std::size_t root, PassStatistics&) { refiner.find_borders(g_, signal_, progress_[root]); });
+    if (std::ranges::all_of(progress_, [](const TileProgress& p) { return p.children.empty(); })) return;
+    in_turn([&](Refiner& refiner, std::size_t root, PassStatistics& local) {
+      refiner.refine_borders(g_, root, sample, signal_, progress_[root], local);
+    });
+  }
 }
 
 void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& statistics) {
@@ -176,7 +208,7 @@ void FragmentPicture::write_tile(const Tile& tile, std::uint32_t sample, Frame& 
   const bool layers = frame.aovs().bits() != AovSet().bits();
   alignas(kCacheLine) std::array<std::uint32_t, kLanes> pixel;
   std::array<std::uint8_t, kLanes> inside;
-  alignas(kCacheLine) std::array<float, kLanes> map;
+  alignas(kCacheLine) std::array<std::array<float, kLanes>, 3> map;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += static_cast<int>(kLanes)) {
       const std::size_t at = g_.at(x, y);
@@ -187,15 +219,27 @@ void FragmentPicture::write_tile(const Tile& tile, std::uint32_t sample, Frame& 
         if (layers && inside[i]) write_layers(at + i, pixel[i], frame);
       }
       PixelBlock block{pixel.data(), inside.data(), sample, 1, {radiance_.x.data() + at, radiance_.y.data() + at, radiance_.z.data() + at}};
-      if (settings_.show != Show::picture && !lights_.empty()) {
-        for (std::size_t i = 0; i < kLanes; ++i)
-          map[i] = settings_.show == Show::levels ? static_cast<float>(signal_.level[at + i]) / kRootLevel : pixels_[0][at + i];
-        block.channel = {map.data(), map.data(), map.data()};
+      if (settings_.show != Show::picture) {
+        for (int c = 0; c < 3; ++c) {
+          std::array<float, kLanes>& values = map[static_cast<std::size_t>(c)];
+          for (std::size_t i = 0; i < kLanes; ++i) values[i] = map_value(at + i, c);
+          block.channel[static_cast<std::size_t>(c)] = values.data();
+        }
       }
       frame.add(Aov::direct, block);
       frame.add_color(block);
     }
   }
+}
+
+// Levels and the signal are those of the last light; rays are summed over all of them.
+float FragmentPicture::map_value(std::size_t at, int channel) const {
+  using Show = FragmentsSettings::Show;
+  const bool last_light = settings_.show == Show::levels || settings_.show == Show::signal;
+  if (!last_light) return channel == 0 ? map_.first(at) : channel == 1 ? map_.second(at) : map_.third(at);
+  if (lights_.empty()) return 0;
+  if (settings_.show == Show::levels) return static_cast<float>(signal_.level[at]) / kRootLevel;
+  return pixels_[signal_.channels == 1 ? 0u : static_cast<std::size_t>(channel)][at];
 }
 
 void FragmentPicture::write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const {

@@ -15,6 +15,7 @@
 #include "methods/fragments/nichols_refiner.h"
 #include "methods/fragments/options.h"
 #include "methods/fragments/refiner.h"
+#include "methods/fragments/stage_map.h"
 #include "methods/method.h"
 
 namespace sightline {
@@ -34,9 +35,11 @@ class FragmentPicture {
   template <class Body>
   void for_roots(const char* stage, PassStatistics& statistics, Body body);
   void render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics);
+  void refine_borders(std::uint32_t sample, PassStatistics& statistics);
   void upsample_light(const AreaLight& light, PassStatistics& statistics);
   void write(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
   void write_tile(const Tile& tile, std::uint32_t sample, Frame& frame) const;
+  float map_value(std::size_t at, int channel) const;
   void write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const;
 
   double steps_ = 0, steps_done_ = 0;
@@ -53,7 +56,9 @@ class FragmentPicture {
   LightSignal signal_;
   std::array<AlignedVector<float>, 3> pixels_;
   AlignedVector<float> smoothed_;
+  StageMap map_;
   std::vector<std::vector<Fragment>> fragments_;  ///< by root tile: what geometry left
+  std::vector<TileProgress> progress_;            ///< by root tile: of the light at hand
 
   // By thread.
   std::vector<std::unique_ptr<CameraPass>> cameras_;

@@ -33,8 +33,13 @@ void Refiner::set_light(const AreaLight& light, const LightPoints& points) {
   probes_.set_light(light, points);
 }
 
+void Refiner::watch(StageMap& map) {
+  map_ = &map;
+  probes_.count_questions();
+}
+
 void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
-                     PassStatistics& statistics) {
+                     TileProgress& progress, PassStatistics& statistics) {
   probes_.begin(static_cast<std::uint32_t>(index));
   finest_test_.begin(static_cast<std::uint32_t>(index));
   const RootTile tile = g.root(index);
@@ -42,14 +47,26 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   clear(g, tile, signal);
   children_.assign(fragments.begin(), fragments.end());
   done_.clear();
-  for (int round = 0;; ++round) {
-    finest_.clear();
-    run_waves(g, sample, signal, statistics);
-    write_pixels(g, sample, signal, statistics);
-    if (round == options_.border_rounds) break;
-    find_borders(g, tile, signal);
-    if (children_.empty()) break;
-  }
+  finest_.clear();
+  run_waves(g, sample, signal, statistics);
+  write_pixels(g, sample, signal, statistics);
+  std::swap(progress.done, done_);
+  progress.children.clear();
+}
+
+void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
+                             PassStatistics& statistics) {
+  if (progress.children.empty()) return;
+  probes_.begin(static_cast<std::uint32_t>(index));
+  finest_test_.begin(static_cast<std::uint32_t>(index));
+  reach_.build(g, g.root(index), *light_);
+  std::swap(children_, progress.children);
+  std::swap(done_, progress.done);
+  finest_.clear();
+  run_waves(g, sample, signal, statistics);
+  write_pixels(g, sample, signal, statistics);
+  std::swap(done_, progress.done);
+  progress.children.clear();
 }
 
 void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
@@ -75,6 +92,7 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     const std::uint64_t before = statistics.rays.occlusion;
     probes_.test(g, current_, masks_, statistics);
     counts_.test_rays += statistics.rays.occlusion - before;
+    if (map_) map_tests(g);
     stable_.clear(), stable_masks_.clear();
     classify(g, signal);
     confirm(g, statistics);
@@ -87,43 +105,48 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
 }
 
 // Stable fragments beside which the signal jumps: the jump lies somewhere between their probes and the border. Small ones become pixels,
-// large ones are tested again in smaller squares. Neighbours in other root tiles are left out, since other threads write there.
-void Refiner::find_borders(const GBuffer& g, const RootTile& tile, const LightSignal& signal) {
+// large ones are tested again in smaller squares.
+void Refiner::find_borders(const GBuffer& g, const LightSignal& signal, TileProgress& progress) {
   const auto value_at = [&](int x, int y) {
     const int half = (1 << signal.level[g.at(x, y)]) / 2;
     return half == 0 ? signal.value[0][g.at(x, y)] : signal.value[0][g.at(x & -half, y & -half)];
   };
-  const auto jumps = [&](int x, int y, int nx, int ny) {
-    if (nx < tile.x0 || ny < tile.y0 || nx >= tile.x1 || ny >= tile.y1 || x >= tile.x1 || y >= tile.y1) return false;
+  const auto jumps = [&](int x, int y, int nx, int ny, float least) {
+    if (!g.inside(x, y) || !g.inside(nx, ny)) return false;
     const std::size_t here = g.at(x, y), there = g.at(nx, ny);
     if (g.kind[here] != g.kind[there] || signal.flags[there] & LightSignal::kUnlit) return false;
-    if (std::fabs(value_at(x, y) - value_at(nx, ny)) < options_.border_jump) return false;
+    if (std::fabs(value_at(x, y) - value_at(nx, ny)) < least) return false;
     const Vec3 normal = load(g.geometric_normal, here);
     return glm::dot(load(g.shading_normal, here), load(g.shading_normal, there)) > 0.9f &&
            std::fabs(glm::dot(load(g.position, there) - load(g.position, here), normal)) < 0.01f * g.depth[here];
   };
   std::size_t kept = 0;
-  for (const Fragment& f : done_) {
+  for (const Fragment& f : progress.done) {
     const int w = f.width();
+    // All or nothing by 16 rays may be nearly so: what lies beside it tells.
+    const float own = value_at(f.x, f.y);
+    const bool saturated = (own == 0 || own == 1) && value_at(f.x + w / 2, f.y) == own && value_at(f.x, f.y + w / 2) == own &&
+                           value_at(f.x + w / 2, f.y + w / 2) == own;
+    const float least = saturated ? options_.border_jump_saturated : options_.border_jump;
     bool jump = false;
     for (int i = 0; i < w && !jump; ++i) {
-      jump = jumps(f.x + i, f.y, f.x + i, f.y - 1) || jumps(f.x + i, f.y + w - 1, f.x + i, f.y + w) ||
-             jumps(f.x, f.y + i, f.x - 1, f.y + i) || jumps(f.x + w - 1, f.y + i, f.x + w, f.y + i);
+      jump = jumps(f.x + i, f.y, f.x + i, f.y - 1, least) || jumps(f.x + i, f.y + w - 1, f.x + i, f.y + w, least) ||
+             jumps(f.x, f.y + i, f.x - 1, f.y + i, least) || jumps(f.x + w - 1, f.y + i, f.x + w, f.y + i, least);
     }
     if (!jump) {
-      done_[kept++] = f;
+      progress.done[kept++] = f;
       continue;
     }
     --counts_.fragments;
     if (f.level > kPixelsLevel) {
-      subdivide(f, 0, children_);
+      subdivide(f, 0, progress.children);
       continue;
     }
     for (int y = f.y; y < f.y + w; ++y) {
-      for (int x = f.x; x < f.x + w; ++x) children_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0});
+      for (int x = f.x; x < f.x + w; ++x) progress.children.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0});
     }
   }
-  done_.resize(kept);
+  progress.done.resize(kept);
 }
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
@@ -168,6 +191,7 @@ void Refiner::confirm(const GBuffer& g, PassStatistics& statistics) {
     const std::uint64_t before = statistics.rays.occlusion;
     probes_.confirm(g, unconfirmed_, static_cast<std::uint32_t>(round), confirmed_, statistics);
     counts_.confirm_rays += statistics.rays.occlusion - before;
+    if (map_) map_questions(g, unconfirmed_);
     std::size_t kept = 0, next = 0;
     for (std::size_t i = 0; i < stable_.size(); ++i) {
       const ProbeMasks& m = stable_masks_[i];
@@ -328,6 +352,7 @@ void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& 
   finest_test_.test(g, *light_, finest_, sample, signal.channels, values_, statistics);
   counts_.finest_rays += statistics.rays.occlusion - before;
   counts_.finest += finest_.size(), counts_.fragments += finest_.size();
+  if (map_) map_pixels(finest_);
   for (std::size_t i = 0; i < finest_.size(); ++i) {
     signal.level[finest_[i]] = 0, signal.flags[finest_[i]] = 0;
     for (int c = 0; c < signal.channels; ++c)
@@ -340,6 +365,12 @@ void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSig
   const std::uint64_t before = statistics.rays.occlusion;
   finest_test_.test(g, *light_, penumbra_, sample, 1, values_, statistics);
   counts_.penumbra_rays += statistics.rays.occlusion - before;
+  for (std::size_t i = 0; map_ && map_->wants_rays() && i < penumbra_.size(); ++i) {
+    const auto stride = static_cast<std::uint32_t>(g.stride);
+    const std::uint8_t level = signal.level[penumbra_at_[i]];
+    const auto corner = [&](std::uint32_t place) { return static_cast<std::uint16_t>(place >> level << level); };
+    map_->add_rays(g, {corner(penumbra_at_[i] % stride), corner(penumbra_at_[i] / stride), level}, finest_test_.asked(i));
+  }
   for (std::size_t i = 0; i < penumbra_.size(); ++i) signal.value[0][penumbra_at_[i]] = values_[0][i];
 }
 
@@ -349,6 +380,7 @@ void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& si
   const std::uint64_t before = statistics.rays.occlusion;
   finest_test_.test(g, *light_, extras_, sample, signal.channels, values_, statistics);
   counts_.extra_rays += statistics.rays.occlusion - before, counts_.extra_samples += extras_.size();
+  if (map_) map_pixels(extras_);
   contradicted_.assign(stable_.size(), 0);
   for (std::size_t i = 0; i < extras_.size(); ++i) {
     signal.flags[extras_[i]] = static_cast<std::uint8_t>(signal.flags[extras_[i]] | LightSignal::kExtra);
@@ -368,6 +400,20 @@ void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& si
       stable_[kept++] = stable_[i];
   }
   stable_.resize(kept);
+}
+
+void Refiner::map_tests(const GBuffer& g) {
+  map_questions(g, current_);
+  for (std::size_t i = 0; map_->wants_gradients() && i < current_.size(); ++i)
+    map_->set_gradient(g, current_[i], steepest_gradient(masks_[i], points_->count));
+}
+
+void Refiner::map_questions(const GBuffer& g, std::span<const Fragment> fragments) {
+  for (std::size_t i = 0; map_->wants_rays() && i < fragments.size(); ++i) map_->add_rays(g, fragments[i], probes_.asked()[i]);
+}
+
+void Refiner::map_pixels(std::span<const std::uint32_t> pixels) {
+  for (std::size_t i = 0; map_->wants_rays() && i < pixels.size(); ++i) map_->add_rays(pixels[i], finest_test_.asked(i));
 }
 
 }  // namespace sightline

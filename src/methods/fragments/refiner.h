@@ -14,6 +14,7 @@
 #include "methods/fragments/options.h"
 #include "methods/fragments/probe_test.h"
 #include "methods/fragments/reach.h"
+#include "methods/fragments/stage_map.h"
 #include "methods/fragments/unshadowed.h"
 
 namespace sightline {
@@ -25,15 +26,29 @@ struct RefinementCounts {
   std::uint64_t test_rays = 0, confirm_rays = 0, finest_rays = 0, penumbra_rays = 0, extra_rays = 0, extra_samples = 0;
 };
 
+/// How far a root tile has come.
+struct TileProgress {
+  std::vector<Fragment> done;      ///< stable fragments that the light reaches
+  std::vector<Fragment> children;  ///< to be refined next
+};
+
 /// Buffers of one thread.
 class Refiner {
  public:
   Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed);
 
   void set_light(const AreaLight& light, const LightPoints& points);
+  /// From now on tests are written to `map`, which must live as long as this.
+  void watch(StageMap& map);
   /// Refines `fragments` (those that geometry left) of root tile `index`, and writes the tile's part of `signal`.
   void refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
-              PassStatistics& statistics);
+              TileProgress& progress, PassStatistics& statistics);
+  /// Moves from progress.done to progress.children what has to be refined again because of what lies beside it, also in other root tiles:
+  /// nothing may be writing to `signal`.
+  void find_borders(const GBuffer& g, const LightSignal& signal, TileProgress& progress);
+  /// Refines progress.children.
+  void refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
+                      PassStatistics& statistics);
   const RefinementCounts& counts() const { return counts_; }
 
   /// The stages below are public for those who refine by other rules: signals of stable fragments from their masks, of pixels, and of none.
@@ -51,7 +66,6 @@ class Refiner {
 
  private:
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
-  void find_borders(const GBuffer& g, const RootTile& tile, const LightSignal& signal);
   void classify(const GBuffer& g, LightSignal& signal);
   void split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal);
   std::uint64_t all_points() const { return points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1; }
@@ -60,6 +74,9 @@ class Refiner {
   void resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void split(const Fragment& f, const ProbeMasks& masks);
+  void map_tests(const GBuffer& g);
+  void map_questions(const GBuffer& g, std::span<const Fragment> fragments);
+  void map_pixels(std::span<const std::uint32_t> pixels);
   float share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const;
   Color irradiance(const Receiver& receiver, std::uint32_t set, const ProbeMasks& masks, int quadrants) const;
 
@@ -78,6 +95,7 @@ class Refiner {
   std::vector<std::uint8_t> contradicted_;
   std::array<std::vector<float>, 3> values_;
   RefinementCounts counts_;
+  StageMap* map_ = nullptr;
 };
 
 }  // namespace sightline
