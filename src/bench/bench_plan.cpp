@@ -20,6 +20,7 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
 
 std::vector<std::string> part_names(const std::vector<BenchPart>& parts) {
   std::vector<std::string> names;
+  names.reserve(parts.size());
   for (const BenchPart& part : parts) names.push_back(part.name);
   return names;
 }
