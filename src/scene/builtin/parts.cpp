@@ -81,10 +81,10 @@ Mesh MeshBuilder::build(std::string name) const {
   return mesh;
 }
 
-MaterialId add_material(Scene& scene, std::string name, SurfaceModel model) {
+MaterialId add_material(Scene& scene, std::string name, const SurfaceModel& model) {
   Material material;
   material.name = std::move(name);
-  material.model = std::move(model);
+  material.model = model;
   scene.materials.push_back(std::move(material));
   return MaterialId(scene.materials.size() - 1);
 }

@@ -31,7 +31,7 @@ class MeshBuilder {
   std::vector<UVec3> triangles_;
 };
 
-MaterialId add_material(Scene& scene, std::string name, SurfaceModel model);
+MaterialId add_material(Scene& scene, std::string name, const SurfaceModel& model);
 MaterialId add_diffuse(Scene& scene, std::string name, const Color& reflectance);
 /// Black, one-sided emitter.
 MaterialId add_emitter(Scene& scene, std::string name, const Color& radiance);

@@ -119,6 +119,7 @@ std::optional<Spectrum> spectrum_from_text(std::string_view text) {
 
 Spectrum blackbody_spectrum(float temperature_k) {
   Spectrum spectrum;
+  spectrum.samples.reserve(kSamples);
   constexpr double kSecondRadiationConstant = 1.438776877e-2;  // h c / k, m K
   for (std::size_t i = 0; i < kSamples; ++i) {
     const float nm = kFirstNm + kStepNm * static_cast<float>(i);
@@ -133,6 +134,7 @@ Spectrum blackbody_spectrum(float temperature_k) {
 
 std::vector<std::pair<float, float>> daylight_d65_samples() {
   std::vector<std::pair<float, float>> samples;
+  samples.reserve(kSamples);
   for (std::size_t i = 0; i < kSamples; ++i) samples.emplace_back(kFirstNm + kStepNm * static_cast<float>(i), kTable[i].d65 / 100);
   return samples;
 }
