@@ -12,12 +12,13 @@ FragmentCandidate fragments_nichols(int threshold) {
 
 const std::vector<FragmentCandidate>& fragment_ablations() {
   static const std::vector<FragmentCandidate> table = {
+      {"fast", {"variant=fast"}},
       {"radial basis functions", {"upsample=rbf"}},
       {"the same, fixed variance", {"upsample=rbf-fixed"}},
-      {"quadrant corners", {"upsample=quad4"}},
+      {"level by level", {"upsample=multipass"}},
       {"always four children", {"subdivide_twice=false"}},
-      {"no additional samples", {"extra_samples=false"}},
-      {"strict threshold", {"strict_threshold=true"}},
+      {"no additional samples", {"extra_samples=off"}},
+      {"strict threshold", {"strict_threshold=on"}},
       {"64 rays a pixel", {"level0_rays=64"}},
       {"no early out", {"early_out=off"}},
       {"probes averaged", {"probes=off"}},

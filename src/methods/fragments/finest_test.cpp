@@ -24,18 +24,18 @@ FinestTest::FinestTest(const World& world, const View& view, Visibility& visibil
       seed_(seed),
       worker_(visibility.worker()) {}
 
-void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, int channels,
-                      std::array<std::vector<float>, 3>& values, PassStatistics& statistics) {
+void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample,
+                      std::uint32_t rays, int channels, std::array<std::vector<float>, 3>& values, PassStatistics& statistics) {
   const bool ratio = channels == 1;
   for (int c = 0; c < channels; ++c) values[static_cast<std::size_t>(c)].resize(pixels.size());
   sums_.assign(pixels.size(), {});
   open_.resize(pixels.size());
   std::iota(open_.begin(), open_.end(), 0u);
-  const std::uint32_t first = options_.early_out ? std::max(options_.rays / 4, 16u) : options_.rays;
-  trace(g, light, pixels, open_, sample, 0, std::min(first, options_.rays), ratio, statistics);
-  if (first < options_.rays) {
+  const std::uint32_t first = options_.early_out ? std::max(rays / 4, 16u) : rays;
+  trace(g, light, pixels, open_, sample, rays, 0, std::min(first, rays), ratio, statistics);
+  if (first < rays) {
     close_saturated(g, pixels);
-    trace(g, light, pixels, open_, sample, first, options_.rays - first, ratio, statistics);
+    trace(g, light, pixels, open_, sample, rays, first, rays - first, ratio, statistics);
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Sums& s = sums_[i];
@@ -44,8 +44,8 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
       continue;
     }
     // Those that stopped early have a quarter of the samples.
-    const float scale = static_cast<float>(options_.rays) / static_cast<float>(first);
-    const bool stopped = first < options_.rays && (s.seen == 0 || s.seen == s.asked) && !std::binary_search(open_.begin(), open_.end(), i);
+    const float scale = static_cast<float>(rays) / static_cast<float>(first);
+    const bool stopped = first < rays && (s.seen == 0 || s.seen == s.asked) && !std::binary_search(open_.begin(), open_.end(), i);
     for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = s.irradiance[c] * (stopped ? scale : 1.f);
   }
 }
@@ -75,8 +75,8 @@ void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t
 }
 
 void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels,
-                       std::span<const std::uint32_t> which, std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio,
-                       PassStatistics& statistics) {
+                       std::span<const std::uint32_t> which, std::uint32_t sample, std::uint32_t rays, std::uint32_t first,
+                       std::uint32_t count, bool ratio, PassStatistics& statistics) {
   const std::size_t at_once = std::max<std::size_t>(kLanesAtOnce / count, 1), lanes = at_once * count;
   position_.resize(lanes), key_.resize(padded(lanes)), index_.resize(padded(lanes)), entry_.resize(padded(lanes));
   for (auto* numbers : {&u0_, &u1_, &selection_, &term_, &weights_}) numbers->resize(padded(lanes) + kLanes);
@@ -97,13 +97,13 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
       if (!exact_) area = footprint_.area(orthographic_ ? camera_ : normalize_or(position - camera_, -normal), g.depth[at], normal);
       queries_.eye.set(p, position, normal, g.error[at], area, at);
       std::fill_n(key_.data() + p * count, count, pixel_key(seed_, y * static_cast<std::uint32_t>(g.width) + x));
-      std::iota(index_.data() + p * count, index_.data() + (p + 1) * count, sample * options_.rays + first);
+      std::iota(index_.data() + p * count, index_.data() + (p + 1) * count, sample * rays + first);
       fill(position_, p * count, count, position);
     }
     sobol_2d(key_.data(), index_.data(), dimension::pair_of(0, dimension::kLightPoint), n, u0_.data(), u1_.data());
     for (std::size_t i = 0; i < n; ++i) {
       const AreaLight::Member& member = light.members[light.pick(u0_[i])];
-      entry_[i] = member.entry, selection_[i] = member.probability * static_cast<float>(options_.rays);
+      entry_[i] = member.entry, selection_[i] = member.probability * static_cast<float>(rays);
     }
     world_.lights().sample_entries(entry_, selection_, position_, u0_, u1_, n, light_);
 

@@ -18,8 +18,9 @@
 namespace sightline {
 
 struct FinestOptions {
-  std::uint32_t rays = 64;
-  bool early_out = true;  ///< a quarter of the rays first; done if all of them agree
+  std::uint32_t rays = 64;         ///< of pixels that geometry made so small: nothing smooths them
+  std::uint32_t smooth_rays = 32;  ///< of pixels on smooth surfaces, in penumbrae
+  bool early_out = true;           ///< a quarter of the rays first; done if all of them agree
 };
 
 /// Buffers of one thread.
@@ -28,17 +29,17 @@ class FinestTest {
   FinestTest(const World& world, const View& view, Visibility& visibility, const FinestOptions& options, std::uint64_t seed);
 
   void begin(std::uint32_t scope) { worker_->begin(scope); }
-  /// The signal of `light` at the given pixels (elements of the GBuffer) in picture sample `sample`; values[c][i] for channel c: the
-  /// visible share for one channel, irradiance / pi for three.
-  void test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, int channels,
-            std::array<std::vector<float>, 3>& values, PassStatistics& statistics);
+  /// The signal of `light`, by `rays` rays each, at the given pixels (elements of the GBuffer) in picture sample `sample`; values[c][i] for
+  /// channel c: the visible share for one channel, irradiance / pi for three.
+  void test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, std::uint32_t rays,
+            int channels, std::array<std::vector<float>, 3>& values, PassStatistics& statistics);
   /// How many questions pixel `i` of the last test has asked; exact visibility traces as many rays.
   std::uint32_t asked(std::size_t i) const { return sums_[i].asked; }
 
  private:
   /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
   void trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which,
-             std::uint32_t sample, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
+             std::uint32_t sample, std::uint32_t rays, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
 
   void close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels);
   FinestTerms weigh_by_lobe(const Receiver& receiver, const FinestRun& run);

@@ -28,6 +28,7 @@ UpsampleOptions::Kind kind_of(S::Upsample setting, S::Variant variant) {
     case S::Variant::koa:
       return UpsampleOptions::Kind::rbf;
     case S::Variant::sightline:
+    case S::Variant::fast:
       break;
   }
   return UpsampleOptions::Kind::quad4;
@@ -36,29 +37,33 @@ UpsampleOptions::Kind kind_of(S::Upsample setting, S::Variant variant) {
 }  // namespace
 
 FragmentOptions resolve(const FragmentsSettings& s) {
-  const bool ours = s.variant == S::Variant::sightline, nichols = s.variant == S::Variant::nichols;
+  const bool nichols = s.variant == S::Variant::nichols, fast = s.variant == S::Variant::fast;
+  const bool ours = s.variant == S::Variant::sightline || fast;
+  const auto number = [](auto setting, auto unset, auto by_variant) { return setting == unset ? by_variant : setting; };
   FragmentOptions o;
   o.refine = s.refine == S::Refine::all                                                      ? FragmentOptions::Refine::all
              : s.refine == S::Refine::nichols || (s.refine == S::Refine::variant && nichols) ? FragmentOptions::Refine::neighbours
                                                                                              : FragmentOptions::Refine::probes;
-  o.geometry = {s.tau_n, s.tau_d, s.depth == S::Depth::plane, s.coarsest};
-  o.split = {s.rays, s.gradient, s.subdivide_twice, s.strict_threshold};
+  const bool probes = o.refine == FragmentOptions::Refine::probes;
+  o.geometry.tau_n = number(s.tau_n, 0.f, ours && !fast ? 0.2f : 0.35f);
+  o.geometry.tau_d = number(s.tau_d, 0.f, ours ? 0.001f : 0.01f);
+  o.geometry.plane_distance = s.depth == S::Depth::plane, o.geometry.coarsest = s.coarsest;
+  o.split = {s.rays, s.gradient, s.subdivide_twice, chosen(s.strict_threshold, fast)};
   o.ratio = s.signal == S::Signal::variant ? ours : s.signal == S::Signal::ratio;
-  // Smoothed penumbrae need half the rays. Everywhere refined is Monte Carlo.
-  const int rays = s.level0_rays > 0 ? std::max(s.level0_rays, 16) : ours && o.refine == FragmentOptions::Refine::probes ? 32 : 64;
-  o.finest = {static_cast<std::uint32_t>(rays), chosen(s.early_out, ours)};
-  // Fragments that are compared with their neighbours have one value, that of their centre.
-  o.interpolate_probes = chosen(s.probes, ours) && o.refine == FragmentOptions::Refine::probes;
+  // Penumbrae that are smoothed need half the rays.
+  const auto rays = [&](int by_variant) { return static_cast<std::uint32_t>(std::max(number(s.level0_rays, 0, by_variant), 16)); };
+  o.finest = {rays(fast ? 16 : 64), rays(fast ? 16 : ours && probes ? 32 : 64), chosen(s.early_out, ours)};
+  // Fragments that are compared with their neighbours have one value, that of their centre, and no additional samples.
+  o.interpolate_probes = chosen(s.probes, ours) && probes;
+  o.extra_samples = chosen(s.extra_samples, !fast) && probes;
   o.upsample.kind = kind_of(s.upsample, s.variant);
-  o.upsample.copy_levels = s.copy_levels >= 0 ? s.copy_levels : ours ? 1 : 2;
+  o.upsample.copy_levels = number(s.copy_levels, -1, ours ? 1 : 2);
   o.upsample.interpolate_probes = o.interpolate_probes;
   o.smooth = chosen(s.smooth, ours) && o.ratio;
   o.dark_culling = s.dark_culling;
-  // Neighbours that are compared have no additional samples.
-  o.extra_samples = s.extra_samples && o.refine == FragmentOptions::Refine::probes;
-  o.confirm = s.confirm >= 0 ? s.confirm : ours ? 1 : 0;
-  o.penumbra_level = s.penumbra_level >= 0 ? s.penumbra_level : ours ? 2 : 8;
-  o.border_rounds = o.ratio ? (s.borders >= 0 ? s.borders : ours ? 3 : 0) : 0;
+  o.confirm = number(s.confirm, -1, ours && !fast ? 1 : 0);
+  o.penumbra_level = number(s.penumbra_level, -1, ours && !fast ? 2 : 8);
+  o.border_rounds = o.ratio ? number(s.borders, -1, ours && !fast ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
   return o;
 }

@@ -24,7 +24,7 @@ struct FragmentOptions {
   int penumbra_level = 3;               ///< stable fragments from this level on that partly see the light trace more rays
   int border_rounds = 2;                ///< how often fragments beside jumps of the signal are refined again
   float border_jump = 0.25f;            ///< in shares of the light
-  float border_jump_saturated = 0.08f;  ///< the same beside fragments that see all or nothing of it
+  float border_jump_saturated = 0.05f;  ///< the same beside fragments that see all or nothing of it
   int nichols_threshold = 6;
 };
 

@@ -36,7 +36,8 @@ void count_refinement(const RefinementCounts& before, const RefinementCounts& af
 FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context)
     : job_(job), view_(view), context_(context), settings_(settings), options_(resolve(settings)), map_(settings.show) {
   const World& world = *job.world;
-  if (job.light_samples > 0) options_.finest.rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
+  if (job.light_samples > 0)
+    options_.finest.rays = options_.finest.smooth_rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
   if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
   const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);

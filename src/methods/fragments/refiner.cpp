@@ -47,7 +47,16 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   clear(g, tile, signal);
   children_.assign(fragments.begin(), fragments.end());
   done_.clear();
-  finest_.clear();
+  finest_.clear(), geometry_pixels_.clear();
+  // What geometry left of level 0 has no neighbours to be smoothed with.
+  std::erase_if(children_, [&](const Fragment& f) {
+    if (f.level > 0) return false;
+    if (reach_.of(f) == ReachPyramid::Reach::all) {
+      geometry_pixels_.push_back(static_cast<std::uint32_t>(g.at(f.x, f.y)));
+      return true;
+    }
+    return false;
+  });
   run_waves(g, sample, signal, statistics);
   write_pixels(g, sample, signal, statistics);
   std::swap(progress.done, done_);
@@ -62,7 +71,7 @@ void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t 
   reach_.build(g, g.root(index), *light_);
   std::swap(children_, progress.children);
   std::swap(done_, progress.done);
-  finest_.clear();
+  finest_.clear(), geometry_pixels_.clear();
   run_waves(g, sample, signal, statistics);
   write_pixels(g, sample, signal, statistics);
   std::swap(done_, progress.done);
@@ -348,22 +357,28 @@ void Refiner::write_centre(const GBuffer& g, const Fragment& f, std::uint64_t ma
 }
 
 void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
+  write_pixels(g, geometry_pixels_, options_.finest.rays, sample, signal, statistics);
+  write_pixels(g, finest_, options_.finest.smooth_rays, sample, signal, statistics);
+}
+
+void Refiner::write_pixels(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t rays, std::uint32_t sample,
+                           LightSignal& signal, PassStatistics& statistics) {
   const std::uint64_t before = statistics.rays.occlusion;
-  finest_test_.test(g, *light_, finest_, sample, signal.channels, values_, statistics);
+  finest_test_.test(g, *light_, pixels, sample, rays, signal.channels, values_, statistics);
   counts_.finest_rays += statistics.rays.occlusion - before;
-  counts_.finest += finest_.size(), counts_.fragments += finest_.size();
-  if (map_) map_pixels(finest_);
-  for (std::size_t i = 0; i < finest_.size(); ++i) {
-    signal.level[finest_[i]] = 0, signal.flags[finest_[i]] = 0;
+  counts_.finest += pixels.size(), counts_.fragments += pixels.size();
+  if (map_) map_pixels(pixels);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    signal.level[pixels[i]] = 0, signal.flags[pixels[i]] = 0;
     for (int c = 0; c < signal.channels; ++c)
-      signal.value[static_cast<std::size_t>(c)][finest_[i]] = values_[static_cast<std::size_t>(c)][i];
+      signal.value[static_cast<std::size_t>(c)][pixels[i]] = values_[static_cast<std::size_t>(c)][i];
   }
 }
 
 void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   if (penumbra_.empty()) return;
   const std::uint64_t before = statistics.rays.occlusion;
-  finest_test_.test(g, *light_, penumbra_, sample, 1, values_, statistics);
+  finest_test_.test(g, *light_, penumbra_, sample, options_.finest.smooth_rays, 1, values_, statistics);
   counts_.penumbra_rays += statistics.rays.occlusion - before;
   for (std::size_t i = 0; map_ && map_->wants_rays() && i < penumbra_.size(); ++i) {
     const auto stride = static_cast<std::uint32_t>(g.stride);
@@ -378,7 +393,7 @@ void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSig
 void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   if (extras_.empty()) return;
   const std::uint64_t before = statistics.rays.occlusion;
-  finest_test_.test(g, *light_, extras_, sample, signal.channels, values_, statistics);
+  finest_test_.test(g, *light_, extras_, sample, options_.finest.smooth_rays, signal.channels, values_, statistics);
   counts_.extra_rays += statistics.rays.occlusion - before, counts_.extra_samples += extras_.size();
   if (map_) map_pixels(extras_);
   contradicted_.assign(stable_.size(), 0);

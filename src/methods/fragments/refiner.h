@@ -72,6 +72,8 @@ class Refiner {
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
   void resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
+  void write_pixels(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t rays, std::uint32_t sample, LightSignal& signal,
+                    PassStatistics& statistics);
   void add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void split(const Fragment& f, const ProbeMasks& masks);
   void map_tests(const GBuffer& g);
@@ -90,6 +92,7 @@ class Refiner {
   std::vector<Fragment> current_, children_, stable_, unconfirmed_, done_;
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
+  std::vector<std::uint32_t> geometry_pixels_;                ///< of level 0 by geometry
   std::vector<std::uint32_t> finest_, extras_, extra_owner_;  ///< an extra sample's fragment: its place in stable_
   std::vector<std::uint32_t> penumbra_, penumbra_at_;         ///< probe pixels, and where their values go
   std::vector<std::uint8_t> contradicted_;

@@ -6,7 +6,7 @@
 namespace sightline {
 
 struct FragmentsSettings {
-  enum class Variant { sightline, koa, nichols };
+  enum class Variant { sightline, koa, nichols, fast };
   /// `variant` stands for what the variant says.
   enum class Refine { variant, koa, nichols, all };
   enum class Upsample { variant, rbf, rbf_fixed, multipass, quad4 };
@@ -30,14 +30,14 @@ struct FragmentsSettings {
   int level0_rays = 0;
   int coarsest = 7;
   int copy_levels = -1;
-  float tau_n = 0.2f;
-  float tau_d = 0.001f;
+  float tau_n = 0;
+  float tau_d = 0;
   Depth depth = Depth::plane;
   int gradient = 7;
   bool subdivide_twice = true;
   bool dark_culling = true;
-  bool strict_threshold = false;
-  bool extra_samples = true;
+  Switch strict_threshold = Switch::variant;
+  Switch extra_samples = Switch::variant;
   int nichols_threshold = 6;
   Jitter jitter = Jitter::hash;
   int edge_samples = 1;
@@ -47,8 +47,8 @@ struct FragmentsSettings {
   static void describe(Visitor&& visit) {
     using S = FragmentsSettings;
     visit("variant", &S::variant,
-          {.help = "preset of what follows: ours, the paper's, or that of its predecessor [Nichols2010]",
-           .choices = {"sightline", "koa", "nichols"}});
+          {.help = "preset of what follows: ours, the paper's, that of its predecessor [Nichols2010], or ours with fewer rays",
+           .choices = {"sightline", "koa", "nichols", "fast"}});
     visit("refine", &S::refine,
           {.help = "where fragments are split: by probes inside them, by comparing neighbours, or everywhere (Monte Carlo)",
            .choices = {"variant", "koa", "nichols", "all"}});
@@ -84,8 +84,11 @@ struct FragmentsSettings {
           {.help = "level of the coarsest fragments, of 2^n pixels", .minimum = 1, .maximum = 7, .symbol = "M_max"});
     visit("copy_levels", &S::copy_levels,
           {.help = "levels up to this one are copied instead of interpolated; -1 = as the variant says", .minimum = -1, .maximum = 7});
-    visit("tau_n", &S::tau_n, {.help = "change of the normal that splits a fragment", .minimum = 0, .maximum = 3, .symbol = "τ_n"});
-    visit("tau_d", &S::tau_d, {.help = "relative change of depth that splits a fragment", .minimum = 0, .maximum = 10, .symbol = "τ_d"});
+    visit("tau_n", &S::tau_n,
+          {.help = "change of the normal that splits a fragment; 0 = as the variant says", .minimum = 0, .maximum = 3, .symbol = "τ_n"});
+    visit(
+        "tau_d", &S::tau_d,
+        {.help = "relative change of depth that splits a fragment; 0 = as the variant says", .minimum = 0, .maximum = 10, .symbol = "τ_d"});
     visit("depth", &S::depth,
           {.help = "change of depth: distance from the tangent plane, or plain difference as in the paper",
            .choices = {"plane", "relative"}});
@@ -94,8 +97,10 @@ struct FragmentsSettings {
         {.help = "differing rays of 16 between neighbouring probes above which both quadrants skip a level", .minimum = 0, .maximum = 16});
     visit("subdivide_twice", &S::subdivide_twice, {.help = "gradient-aware subdivision (off: always four children)"});
     visit("dark_culling", &S::dark_culling, {.help = "fragments that see nothing of the light are done"});
-    visit("strict_threshold", &S::strict_threshold, {.help = "the paper's threshold read as 'more than' instead of 'at least'"});
-    visit("extra_samples", &S::extra_samples, {.help = "three finest samples on the upper and left edge of stable fragments"});
+    visit("strict_threshold", &S::strict_threshold,
+          {.help = "the paper's threshold read as 'more than' instead of 'at least'", .choices = {"variant", "off", "on"}});
+    visit("extra_samples", &S::extra_samples,
+          {.help = "three finest samples on the upper and left edge of stable fragments", .choices = {"variant", "off", "on"}});
     visit("nichols_threshold", &S::nichols_threshold,
           {.help = "rays of 64 by which neighbours may differ (refine=nichols)", .minimum = 0, .maximum = 64});
     visit("jitter", &S::jitter, {.help = "how light points are moved from fragment to fragment", .choices = {"hash", "blue"}});
