@@ -42,6 +42,18 @@ AreaLight group_of(const LightTable& lights, std::span<const std::uint32_t> entr
   return group;
 }
 
+float fraction(float x) { return x - std::floor(x); }
+
+// Where in its stratum point `k` of a set lies.
+Vec2 point_jitter(PointJitter jitter, std::uint32_t set, std::uint32_t k, std::uint64_t seed) {
+  const std::uint32_t key = hash_combine(pixel_key(seed, jitter == PointJitter::hash ? set : 0), k);
+  const Vec2 anywhere{unit_float(hash32(key)), unit_float(hash32(key ^ 0x9e3779b9u))};
+  if (jitter == PointJitter::hash) return anywhere;
+  constexpr std::uint32_t kShifts = LightPoints::kShifts;
+  const Vec2 shift{static_cast<float>(set % kShifts) / kShifts, static_cast<float>(set / kShifts) / kShifts};
+  return {fraction(anywhere.x + shift.x), fraction(anywhere.y + shift.y)};
+}
+
 }  // namespace
 
 std::size_t AreaLight::pick(float& u) const {
@@ -79,18 +91,18 @@ std::vector<AreaLight> area_lights(const LightTable& lights, std::size_t limit) 
   return groups;
 }
 
-LightPoints light_points(const LightTable& lights, const AreaLight& light, std::uint32_t count, std::uint64_t seed) {
+LightPoints light_points(const LightTable& lights, const AreaLight& light, std::uint32_t count, std::uint64_t seed, PointJitter jitter) {
   LightPoints points;
-  points.count = count;
+  points.count = count, points.jitter = jitter;
   const std::size_t total = static_cast<std::size_t>(LightPoints::kSets) * count;
   points.point.resize(total), points.normal.resize(total), points.radiance.resize(total);
   points.error.resize(total), points.area.resize(total), points.two_sided.resize(total);
   const std::uint32_t columns = count == 16 ? 4 : 8, rows = count / columns;
   for (std::size_t i = 0; i < total; ++i) {
     const auto k = static_cast<std::uint32_t>(i % count), set = static_cast<std::uint32_t>(i / count);
-    const std::uint32_t key = hash_combine(pixel_key(seed, set), k);
-    Vec2 u{(static_cast<float>(k % columns) + unit_float(hash32(key))) / static_cast<float>(columns),
-           (static_cast<float>(k / columns) + unit_float(hash32(key ^ 0x9e3779b9u))) / static_cast<float>(rows)};
+    const Vec2 offset = point_jitter(jitter, set, k, seed);
+    Vec2 u{(static_cast<float>(k % columns) + offset.x) / static_cast<float>(columns),
+           (static_cast<float>(k / columns) + offset.y) / static_cast<float>(rows)};
     const AreaLight::Member& member = light.members[light.pick(u.x)];
     // Seen from in front of it, wherever that is.
     const Vec3 front = member.polygon[0] + member.normal * glm::length(member.polygon[1] - member.polygon[0]);

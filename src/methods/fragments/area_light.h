@@ -37,16 +37,24 @@ struct AreaLight {
 /// Every flat light with power, at most `limit` of them; where there are more, neighbours are folded together.
 std::vector<AreaLight> area_lights(const LightTable& lights, std::size_t limit);
 
+/// Where within its stratum a point lies.
+enum class PointJitter : std::uint8_t {
+  hash,  ///< anywhere, in each set anew
+  blue,  ///< one pattern that sets (0 ... 15) + 16 (0 ... 15) move along both axes of the strata: like numbers, like errors
+};
+
 /// Sets of stratified points on an area light. All probes of a fragment share one set, so that bit k of their answers means the same point;
-/// fragments take sets by a hash of their place. Point k of set s is element s * count + k.
+/// fragments take sets by their place. Point k of set s is element s * count + k.
 struct LightPoints {
-  static constexpr std::uint32_t kSets = 256;
+  static constexpr std::uint32_t kShifts = 16, kSets = kShifts * kShifts;
+  PointJitter jitter = PointJitter::hash;
   std::uint32_t count = 16;  ///< 16, 32 or 64: strata of 4x4, 8x4, 8x8
   Vec3Batch point, normal, radiance;
   AlignedVector<float> error;      ///< of `point`, per component
   AlignedVector<float> area;       ///< surface that the point stands for: 1 / (count * density)
   AlignedVector<float> two_sided;  ///< 1 or 0
 };
-LightPoints light_points(const LightTable& lights, const AreaLight& light, std::uint32_t count, std::uint64_t seed);
+LightPoints light_points(const LightTable& lights, const AreaLight& light, std::uint32_t count, std::uint64_t seed,
+                         PointJitter jitter = PointJitter::hash);
 
 }  // namespace sightline

@@ -32,6 +32,7 @@ void CentreTest::test(const GBuffer& g, std::span<const Fragment> fragments, std
                       PassStatistics& statistics) {
   const auto rays = static_cast<std::uint32_t>(queries_.light.size);
   masks.resize(fragments.size());
+  asked_.clear();
   for (std::size_t first = 0; first < fragments.size(); first += kAtOnce) {
     const std::span some = fragments.subspan(first, std::min(kAtOnce, fragments.size() - first));
     queries_.eye.resize(some.size());
@@ -57,6 +58,9 @@ void CentreTest::test(const GBuffer& g, std::span<const Fragment> fragments, std
       std::uint64_t mask = 0;
       for (std::uint32_t k = 0; k < rays; ++k) mask |= static_cast<std::uint64_t>(weights_[i * rays + k] > 0.5f) << k;
       masks[first + i] = mask;
+      if (!counts_questions_) continue;
+      const std::uint32_t* own = queries_.light_of.data() + i * rays;
+      asked_.push_back(rays - static_cast<std::uint32_t>(std::count(own, own + rays, kNoQuery)));
     }
   }
 }

@@ -20,6 +20,9 @@ class CentreTest {
   CentreTest(const View& view, Visibility& visibility);
 
   void begin(std::uint32_t scope) { worker_->begin(scope); }
+  /// As with ProbeTest.
+  void count_questions() { counts_questions_ = true; }
+  const std::vector<std::uint32_t>& asked() const { return asked_; }
   void set_light(const AreaLight& light, const LightPoints& points);
   /// masks[i]: which points of the first set the centre of fragments[i] sees.
   void test(const GBuffer& g, std::span<const Fragment> fragments, std::vector<std::uint64_t>& masks, PassStatistics& statistics);
@@ -32,6 +35,8 @@ class CentreTest {
   const AreaLight* light_ = nullptr;
   QueryBatch queries_;
   AlignedVector<float> weights_;
+  bool counts_questions_ = false;
+  std::vector<std::uint32_t> asked_;
 };
 
 /// The pixel in the middle of a fragment, moved into the picture.

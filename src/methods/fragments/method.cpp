@@ -23,6 +23,10 @@ const MethodInfo& FragmentsMethod::info() const {
 SettingsValue FragmentsMethod::default_settings() const { return SettingsValue::of<FragmentsSettings>(); }
 
 void FragmentsMethod::check(const Scene&, const RenderJob& job) const {
+  using S = FragmentsSettings;
+  const S& settings = job.settings.as<S>();
+  if (settings.refine == S::Refine::all && settings.show != S::Show::picture)
+    throw usage_error("refine=all has no stages to show").remedy("leave out refine=all, or show=");
   if (job.visibility && !job.visibility->binary())
     throw usage_error("method fragments compares which rays arrive: it needs answers of yes or no")
         .remedy("use --visibility exact or cached");

@@ -36,6 +36,15 @@ NicholsRefiner::NicholsRefiner(const View& view, Visibility& visibility, const F
   for (int i = 0; i < context.thread_count(); ++i) workers_.push_back({CentreTest(view, visibility), {}, {}, {}, {}, {}});
 }
 
+void NicholsRefiner::watch(StageMap& map) {
+  map_ = &map;
+  for (Worker& worker : workers_) worker.test.count_questions();
+}
+
+void NicholsRefiner::map_questions(const GBuffer& g, const Worker& worker, std::span<const Fragment> fragments) {
+  for (std::size_t i = 0; map_->wants_rays() && i < fragments.size(); ++i) map_->add_rays(g, fragments[i], worker.test.asked()[i]);
+}
+
 template <class Body>
 void NicholsRefiner::for_roots(const GBuffer& g, Body body) {
   parallel_for(context_, g.root_count(), 1, [&](std::size_t begin, std::size_t end) {
@@ -139,6 +148,7 @@ void NicholsRefiner::ask(const GBuffer& g, std::size_t root, const Grid& grid, W
   worker.test.begin(static_cast<std::uint32_t>(root));
   worker.test.test(g, worker.fragments, worker.masks, worker.statistics);
   worker.counts.test_rays += worker.statistics.rays.occlusion - before;
+  if (map_) map_questions(g, worker, worker.fragments);
   for (std::size_t i = 0; i < worker.fragments.size(); ++i) {
     NicholsCell& cell = cells_[grid.at(worker.fragments[i].x >> grid.level, worker.fragments[i].y >> grid.level)];
     cell.mask = worker.masks[i], cell.known = true;
@@ -154,6 +164,12 @@ void NicholsRefiner::split(const GBuffer& g, std::size_t root, const Grid& grid,
     for (int i = 0; i < 9; ++i) {
       const int nx = x + i % 3 - 1, ny = y + i / 3 - 1;
       if (nx >= 0 && ny >= 0 && nx < grid.columns && ny < grid.rows) cells[static_cast<std::size_t>(i)] = cells_[grid.at(nx, ny)];
+    }
+    if (map_ && map_->wants_gradients()) {
+      int steepest = 0;
+      for (const NicholsCell& other : cells)
+        steepest = std::max(steepest, other.known && cells[4].known ? std::popcount(other.mask ^ cells[4].mask) : 0);
+      map_->set_gradient(g, f, static_cast<float>(steepest) / static_cast<float>(kRays));
     }
     if (nichols_splits(cells, options_.nichols_threshold)) {
       subdivide(f, 0, own.next);
@@ -172,6 +188,7 @@ void NicholsRefiner::finish(const GBuffer& g, std::size_t root, const Refiner& w
   worker.test.begin(static_cast<std::uint32_t>(root));
   worker.test.test(g, own.current, worker.masks, worker.statistics);
   worker.counts.finest_rays += worker.statistics.rays.occlusion - before;
+  if (map_) map_questions(g, worker, own.current);
   for (std::size_t i = 0; i < own.current.size(); ++i) {
     writer.write_level(g, own.current[i], 0, signal);
     writer.write_centre(g, own.current[i], worker.masks[i], signal);

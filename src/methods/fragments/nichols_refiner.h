@@ -36,6 +36,9 @@ class NicholsRefiner {
 
   NicholsRefiner(const View& view, Visibility& visibility, const FragmentOptions& options, const Context& context);
 
+  /// From now on tests are written to `map`, which must live as long as this.
+  void watch(StageMap& map);
+
   /// Refines the fragments that geometry left, by root tile, and writes `signal`. `writers`, one a thread, know the light and its points;
   /// of these the first set is used.
   RefinementCounts refine(const GBuffer& g, const std::vector<std::vector<Fragment>>& fragments, const AreaLight& light,
@@ -69,6 +72,7 @@ class NicholsRefiner {
             LightSignal& signal, Worker& worker);
   void begin_level(const GBuffer& g, std::size_t root, const Grid& grid);
   void ask(const GBuffer& g, std::size_t root, const Grid& grid, Worker& worker);
+  void map_questions(const GBuffer& g, const Worker& worker, std::span<const Fragment> fragments);
   void split(const GBuffer& g, std::size_t root, const Grid& grid, const Refiner& writer, LightSignal& signal, Worker& worker);
   void finish(const GBuffer& g, std::size_t root, const Refiner& writer, LightSignal& signal, Worker& worker);
 
@@ -77,6 +81,7 @@ class NicholsRefiner {
   std::vector<Worker> workers_;
   std::vector<Root> roots_;
   std::vector<NicholsCell> cells_;
+  StageMap* map_ = nullptr;
 };
 
 }  // namespace sightline

@@ -4,6 +4,7 @@
 
 #include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
+#include "methods/fragments/blue_noise.h"
 
 namespace sightline {
 namespace {
@@ -33,6 +34,16 @@ ProbeTest::ProbeTest(const World&, const View& view, Visibility& visibility, std
       worker_(visibility.worker()) {}
 
 std::uint32_t ProbeTest::set_of(const Fragment& f) const {
+  if (points_ && points_->jitter == PointJitter::blue) {
+    // The mask twice, far enough apart to have nothing to do with itself.
+    constexpr std::uint32_t kShifts = LightPoints::kShifts, kAcross = 23, kDown = 37;
+    const std::uint32_t place = pixel_key(seed_, f.level);
+    const std::uint32_t x = (static_cast<std::uint32_t>(f.x) >> f.level) + (place & 0xff);
+    const std::uint32_t y = (static_cast<std::uint32_t>(f.y) >> f.level) + (place >> 8 & 0xff);
+    const BlueNoise& noise = BlueNoise::shared();
+    const auto shift = [&](std::uint32_t rank) { return rank * kShifts / BlueNoise::kCount; };
+    return shift(noise.rank(x, y)) + kShifts * shift(noise.rank(x + kAcross, y + kDown));
+  }
   const std::uint32_t place = static_cast<std::uint32_t>(f.x) | static_cast<std::uint32_t>(f.y) << 16;
   return hash_combine(pixel_key(seed_, place), f.level) % LightPoints::kSets;
 }
@@ -77,9 +88,18 @@ void ProbeTest::ask(PassStatistics& statistics) {
   worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
 }
 
+void ProbeTest::count_questions(std::size_t fragments, std::size_t questions_each) {
+  for (std::size_t i = 0; i < fragments; ++i) {
+    const std::uint32_t* first = queries_.light_of.data() + i * questions_each;
+    const auto left_out = std::count(first, first + questions_each, kNoQuery);
+    asked_.push_back(static_cast<std::uint32_t>(questions_each) - static_cast<std::uint32_t>(left_out));
+  }
+}
+
 void ProbeTest::test(const GBuffer& g, std::span<const Fragment> fragments, std::vector<ProbeMasks>& masks, PassStatistics& statistics) {
   const std::uint32_t rays = points_->count;
   masks.resize(fragments.size());
+  asked_.clear();
   for (std::size_t first = 0; first < fragments.size(); first += kFragments) {
     const std::span some = fragments.subspan(first, std::min(kFragments, fragments.size() - first));
     queries_.eye.resize(16 * some.size());
@@ -101,6 +121,7 @@ void ProbeTest::test(const GBuffer& g, std::span<const Fragment> fragments, std:
       }
     }
     ask(statistics);
+    if (counts_questions_) count_questions(some.size(), 4 * static_cast<std::size_t>(rays));
     const float* weight = weights_.data();
     for (std::size_t i = 0; i < some.size(); ++i) {
       for (std::uint64_t& mask : masks[first + i]) {
@@ -116,6 +137,7 @@ void ProbeTest::confirm(const GBuffer& g, std::span<const Fragment> fragments, s
                         PassStatistics& statistics) {
   const std::uint32_t rays = points_->count;
   masks.resize(fragments.size());
+  asked_.clear();
   for (std::size_t first = 0; first < fragments.size(); first += 4 * kFragments) {
     const std::span some = fragments.subspan(first, std::min(4 * kFragments, fragments.size() - first));
     queries_.eye.resize(some.size());
@@ -133,6 +155,7 @@ void ProbeTest::confirm(const GBuffer& g, std::span<const Fragment> fragments, s
       for (std::uint32_t k = 0; k < rays; ++k, ++query) add_query(query, eye, light + k);
     }
     ask(statistics);
+    if (counts_questions_) count_questions(some.size(), rays);
     const float* weight = weights_.data();
     for (std::size_t i = 0; i < some.size(); ++i, weight += rays) {
       std::uint64_t mask = 0;

@@ -38,6 +38,10 @@ class ProbeTest {
   /// One more probe each at a random pixel of the fragment, which asks the same points as its quadrants did.
   void confirm(const GBuffer& g, std::span<const Fragment> fragments, std::uint32_t round, std::vector<std::uint64_t>& masks,
                PassStatistics& statistics);
+  /// From now on asked()[i] is how many questions fragment i of the last test or confirmation has asked; exact visibility traces as many
+  /// rays.
+  void count_questions() { counts_questions_ = true; }
+  const std::vector<std::uint32_t>& asked() const { return asked_; }
   /// The set of light points that a fragment uses.
   std::uint32_t set_of(const Fragment& f) const;
 
@@ -45,6 +49,7 @@ class ProbeTest {
   void add_eye(const GBuffer& g, IVec2 pixel);
   void add_query(std::size_t query, std::uint32_t eye, std::uint32_t light);
   void ask(PassStatistics& statistics);
+  void count_questions(std::size_t fragments, std::size_t questions_each);
 
   EyeFootprint footprint_;
   Vec3 camera_;
@@ -57,6 +62,8 @@ class ProbeTest {
   std::vector<std::uint8_t> above_;  ///< by eye end: the whole light lies above its surface
   QueryBatch queries_;
   AlignedVector<float> weights_;
+  bool counts_questions_ = false;
+  std::vector<std::uint32_t> asked_;
 };
 
 }  // namespace sightline
