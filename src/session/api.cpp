@@ -1,4 +1,5 @@
 // The public interface of include/sightline/sightline.h, on top of the session.
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "methods/method.h"
@@ -37,7 +38,7 @@ RenderRequest render_request(const RenderOptions& options) {
   RenderRequest request;
   request.method = options.method;
   if (!options.visibility.empty()) request.visibility = options.visibility;
-  for (const auto& [key, value] : options.settings) request.settings.push_back(key + "=" + value);
+  for (const auto& [key, value] : options.settings) request.settings.push_back(fmt::format("{}={}", key, value));
   if (options.spp < 0 || options.light_samples < 0 || options.time_limit_s < 0)
     throw usage_error("spp, light_samples and time_limit_s cannot be negative");
   if (options.spp > 0) request.spp = options.spp;

@@ -124,8 +124,9 @@ void check_whole_passes(SampleRange samples, std::uint32_t multiple, std::uint32
       .remedy(fmt::format("with these settings both ends must be multiples of {}", multiple));
 }
 
-RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
-                    const RenderRequest& request, const Context& context, const Stopwatch& since_start, std::vector<FrameSink*> sinks) {
+RenderResult render(const std::shared_ptr<const World>& world, const Camera& camera, IVec2 size_px, PixelFilter filter,
+                    const RenderRequest& request, const Context& context, const Stopwatch& since_start,
+                    const std::vector<FrameSink*>& sinks) {
   const Method& method = find_method(request.method);
   const VisibilityInfo& visibility_info = find_visibility(request.visibility.value_or(method.default_visibility()));
   const ResolvedSettings settings = resolve_settings(method, visibility_info, request.settings);

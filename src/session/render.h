@@ -57,8 +57,9 @@ class FrameSink {
 /// Cancelling the context ends the loop after the pass, or, if that takes longer than 5 s, with what complete tiles hold
 /// (StopReason::interrupted); a time limit ends it within the pass. Both throw only if there is no complete tile at all. A checkpoint that
 /// cannot be written is a warning.
-RenderResult render(std::shared_ptr<const World> world, const Camera& camera, IVec2 size_px, PixelFilter filter,
-                    const RenderRequest& request, const Context& context, const Stopwatch& since_start, std::vector<FrameSink*> sinks = {});
+RenderResult render(const std::shared_ptr<const World>& world, const Camera& camera, IVec2 size_px, PixelFilter filter,
+                    const RenderRequest& request, const Context& context, const Stopwatch& since_start,
+                    const std::vector<FrameSink*>& sinks = {});
 
 /// The settings of a request resolved: throws Error{usage} for unknown keys (nearest of both schemas) and bad values.
 struct ResolvedSettings {

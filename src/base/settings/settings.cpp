@@ -89,7 +89,7 @@ const Setting& Schema::find(std::string_view name) const {
   throw_unknown_setting(name, {this});
 }
 
-void throw_unknown_setting(std::string_view name, std::vector<const Schema*> schemas) {
+void throw_unknown_setting(std::string_view name, const std::vector<const Schema*>& schemas) {
   std::vector<std::string> known;
   for (const Schema* schema : schemas) {
     for (const Setting& setting : schema->settings()) known.push_back(setting.name);

@@ -68,20 +68,19 @@ class Schema {
   template <class S>
   static Schema of() {
     Schema schema;
-    S::describe(
-        [&]<class M>(std::string name, M S::* member, SettingInfo info) { schema.add<S, M>(std::move(name), member, std::move(info)); });
+    S::describe([&]<class M>(const std::string& name, M S::* member, const SettingInfo& info) { schema.add<S, M>(name, member, info); });
     return schema;
   }
 
  private:
   template <class S, class M>
-  void add(std::string name, M S::* member, SettingInfo info);
+  void add(const std::string& name, M S::* member, const SettingInfo& info);
 
   std::vector<Setting> settings_;
 };
 
 /// Throws Error{usage} that names the nearest key of several schemas.
-[[noreturn]] void throw_unknown_setting(std::string_view name, std::vector<const Schema*> schemas);
+[[noreturn]] void throw_unknown_setting(std::string_view name, const std::vector<const Schema*>& schemas);
 
 /// The known name closest to `name` (edit distance at most a third of its length), or empty.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
@@ -114,7 +113,7 @@ class SettingsValue {
 };
 
 template <class S, class M>
-void Schema::add(std::string name, M S::* member, SettingInfo info) {
+void Schema::add(const std::string& name, M S::* member, const SettingInfo& info) {
   Setting setting{name, SettingType::text, info, {}, {}};
   if constexpr (std::is_same_v<M, bool>) {
     setting.type = SettingType::boolean;

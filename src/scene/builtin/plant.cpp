@@ -176,7 +176,8 @@ Plan make_plan(const PlantSettings& s) {
   const std::uint64_t count = std::max<std::uint64_t>(1, (s.triangles * kVariants + sum / 2) / sum);
   const auto side = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   for (std::uint64_t i = 0; i < count; ++i) {
-    const Vec3 offset(kUnitEdge * static_cast<float>(i % side), 0, -kUnitEdge * static_cast<float>(i / side));
+    const std::uint64_t column = i % side, row = i / side;
+    const Vec3 offset(kUnitEdge * static_cast<float>(column), 0, -kUnitEdge * static_cast<float>(row));
     plan.placements.push_back({i % kVariants, offset});
     for (const Vec3& p : plan.units[i % kVariants].positions) plan.bounds.add(p + offset);
   }

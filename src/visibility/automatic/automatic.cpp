@@ -133,8 +133,8 @@ VisibilityInfo automatic_visibility() {
   info.deterministic = false;
   info.make = [](std::shared_ptr<const World> world, const SettingsValue& settings, const Context& context) -> std::unique_ptr<Visibility> {
     const VisibilityInfo rays = exact_visibility();
-    return std::make_unique<AutomaticVisibility>(cached_visibility().make(world, settings, context),
-                                                 rays.make(world, rays.settings, context));
+    std::unique_ptr<Visibility> cached_answers = cached_visibility().make(world, settings, context);
+    return std::make_unique<AutomaticVisibility>(std::move(cached_answers), rays.make(std::move(world), rays.settings, context));
   };
   return info;
 }
