@@ -19,10 +19,10 @@ void reserve_in_large_pages(AlignedVector<T>& array, std::size_t count) {
   if (array.capacity() >= count) return;
   array.reserve(count);
 #ifdef __linux__
-  constexpr std::uintptr_t kPage = 4096;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(array.data()) + kPage - 1) & ~(kPage - 1);
-  const auto end = reinterpret_cast<std::uintptr_t>(array.data() + array.capacity()) & ~(kPage - 1);
-  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // may fail: then pages are small
+  constexpr std::size_t kPage = 4096;
+  auto* const bytes = reinterpret_cast<std::byte*>(array.data());
+  const std::size_t size = array.capacity() * sizeof(T), before = (kPage - reinterpret_cast<std::uintptr_t>(bytes) % kPage) % kPage;
+  if (size >= before + kPage) madvise(bytes + before, (size - before) / kPage * kPage, MADV_HUGEPAGE);  // may fail: then pages are small
 #endif
 }
 inline void reserve_in_large_pages(Vec3Batch& batch, std::size_t count) {

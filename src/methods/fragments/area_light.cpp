@@ -50,7 +50,8 @@ Vec2 point_jitter(PointJitter jitter, std::uint32_t set, std::uint32_t k, std::u
   const Vec2 anywhere{unit_float(hash32(key)), unit_float(hash32(key ^ 0x9e3779b9u))};
   if (jitter == PointJitter::hash) return anywhere;
   constexpr std::uint32_t kShifts = LightPoints::kShifts;
-  const Vec2 shift{static_cast<float>(set % kShifts) / kShifts, static_cast<float>(set / kShifts) / kShifts};
+  const std::uint32_t column = set % kShifts, row = set / kShifts;
+  const Vec2 shift{static_cast<float>(column) / kShifts, static_cast<float>(row) / kShifts};
   return {fraction(anywhere.x + shift.x), fraction(anywhere.y + shift.y)};
 }
 
@@ -101,8 +102,9 @@ LightPoints light_points(const LightTable& lights, const AreaLight& light, std::
   for (std::size_t i = 0; i < total; ++i) {
     const auto k = static_cast<std::uint32_t>(i % count), set = static_cast<std::uint32_t>(i / count);
     const Vec2 offset = point_jitter(jitter, set, k, seed);
-    Vec2 u{(static_cast<float>(k % columns) + offset.x) / static_cast<float>(columns),
-           (static_cast<float>(k / columns) + offset.y) / static_cast<float>(rows)};
+    const std::uint32_t column = k % columns, row = k / columns;
+    Vec2 u{(static_cast<float>(column) + offset.x) / static_cast<float>(columns),
+           (static_cast<float>(row) + offset.y) / static_cast<float>(rows)};
     const AreaLight::Member& member = light.members[light.pick(u.x)];
     // Seen from in front of it, wherever that is.
     const Vec3 front = member.polygon[0] + member.normal * glm::length(member.polygon[1] - member.polygon[0]);

@@ -74,7 +74,7 @@ struct GBuffer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
   }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
-  std::size_t root_count() const { return static_cast<std::size_t>((stride / kRootSize) * (rows / kRootSize)); }
+  std::size_t root_count() const { return static_cast<std::size_t>(stride / kRootSize) * static_cast<std::size_t>(rows / kRootSize); }
   std::size_t root_of(int x, int y) const {
     return static_cast<std::size_t>(y / kRootSize) * static_cast<std::size_t>(stride / kRootSize) + static_cast<std::size_t>(x / kRootSize);
   }

@@ -32,7 +32,7 @@ class DiscontinuityPyramid {
 
  private:
   static std::size_t index(int m) { return static_cast<std::size_t>(m); }
-  static std::size_t at(int m, int x, int y) { return static_cast<std::size_t>((y << (kRootLevel - m)) + x); }
+  static std::size_t at(int m, int x, int y) { return static_cast<std::size_t>(y << (kRootLevel - m)) + static_cast<std::size_t>(x); }
   void refine(const GBuffer& g, const RootTile& tile, const GeometryOptions& options, int m, int x, int y,
               std::vector<Fragment>& fragments) const;
   std::array<AlignedVector<float>, kRootLevel + 1> kappa_, dz_;

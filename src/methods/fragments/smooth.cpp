@@ -33,7 +33,7 @@ class Uniform {
       for (int i = -1; i <= kBlocks; ++i) {
         const int x0 = tile.x0 + i * kBlock, y0 = tile.y0 + j * kBlock;
         const int columns = std::min(kBlock, g.width - x0), rows = std::min(kBlock, g.height - y0);
-        Block& block = blocks_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)];
+        Block& block = blocks_[static_cast<std::size_t>(std::ptrdiff_t{j} + 1)][static_cast<std::size_t>(std::ptrdiff_t{i} + 1)];
         block.inside = x0 >= 0 && y0 >= 0 && columns > 0 && rows > 0;
         if (!block.inside) continue;
         const float* first = input.signal.data() + g.at(x0, y0);
