@@ -27,7 +27,11 @@ if ((${#files[@]} == 0)); then
   echo "tidy: nothing changed"
   exit 0
 fi
-[[ -f build/dev/compile_commands.json ]] || cmake --preset dev >/dev/null
+commands=build/dev/compile_commands.json
+# Commands older than a list of sources lack what was added since.
+if [[ ! -f $commands || -n $(find CMakeLists.txt cmake src apps tests \( -name CMakeLists.txt -o -name '*.cmake' \) -newer $commands -print -quit) ]]; then
+  cmake --preset dev >/dev/null
+fi
 # clang does not know GCC's warning options that stand in the compile commands.
 printf '%s\0' "${files[@]}" | xargs -0 -P "$(nproc)" -n 4 "$tidy" -p build/dev --quiet --warnings-as-errors='*' \
   --extra-arg=-Wno-unknown-warning-option 2>&1 | { grep -v -E '^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter' || true; }
