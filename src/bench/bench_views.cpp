@@ -43,6 +43,7 @@ std::vector<std::string> rows_of_points() {
 /// Nine lights under the ceiling, 400 apart.
 std::vector<std::string> grid_of_areas() {
   std::vector<std::string> lights;
+  lights.reserve(9);
   for (int i = 0; i < 9; ++i)
     lights.push_back(fmt::format("{},640,{} 0,-1,0 100x100 20,20,20", 300 + 400 * (i % 3 - 1), -200 + 400 * (i / 3 - 1)));
   return lights;
@@ -97,7 +98,7 @@ std::optional<std::filesystem::path> folder_with(const std::vector<std::string>&
   std::size_t begin = 0;
   while (begin <= folders.size()) {
     const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    const std::filesystem::path folder = folders.substr(begin, end - begin);
+    std::filesystem::path folder = folders.substr(begin, end - begin);
     if (std::all_of(files.begin(), files.end(), [&](const std::string& file) { return std::filesystem::exists(folder / file); }))
       return folder;
     begin = end + 1;

@@ -169,6 +169,7 @@ Image parse_png(std::span<const std::byte> bytes) {
   if (reader.row_bytes() * static_cast<std::size_t>(image.height) != image.size_bytes())
     throw input_error("the PNG has an unexpected layout");
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) rows.push_back(first + static_cast<std::size_t>(y) * reader.row_bytes());
   if (!reader.read(rows.data())) throw failure();
   return image;

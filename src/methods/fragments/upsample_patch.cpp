@@ -202,7 +202,7 @@ class Patch {
         if (length == 1) curve[static_cast<std::size_t>(run.begin)] = middle[c];
         for (int i = 0; length > 1 && i < length / 2; ++i) {
           const float t = static_cast<float>(2 * i + 1) / static_cast<float>(length);
-          curve[static_cast<std::size_t>(run.begin + i)] = from[c] + t * (middle[c] - from[c]);
+          curve[static_cast<std::size_t>(run.begin) + static_cast<std::size_t>(i)] = from[c] + t * (middle[c] - from[c]);
           curve[static_cast<std::size_t>(run.end - 1 - i)] = to[c] + t * (middle[c] - to[c]);
         }
       }
@@ -227,13 +227,14 @@ class Patch {
       const float t = (static_cast<float>(i) + 0.5f) * step;
       const auto at = static_cast<std::size_t>(i);
       u[at] = k & 1 ? 1 - t : t;
-      bend[at] = curve_[horizontal][c][static_cast<std::size_t>(x0 + i)] - (corner + u[at] * (on_horizontal - corner));
+      bend[at] = curve_[horizontal][c][static_cast<std::size_t>(x0) + at] - (corner + u[at] * (on_horizontal - corner));
     }
     for (int j = 0; j < rows; ++j) {
       const float t = (static_cast<float>(j) + 0.5f) * step, v = k & 2 ? 1 - t : t;
       const float at_edge = corner + v * (on_vertical - corner), inside = on_horizontal + v * (centre - on_horizontal);
-      const float vertical_bend = curve_[vertical][c][static_cast<std::size_t>(y0 + j)] - at_edge;
-      float* row = out + static_cast<std::size_t>(y0 + j) * out_stride + static_cast<std::size_t>(x0);
+      const auto line = static_cast<std::size_t>(y0) + static_cast<std::size_t>(j);
+      const float vertical_bend = curve_[vertical][c][line] - at_edge;
+      float* row = out + line * out_stride + static_cast<std::size_t>(x0);
       for (int i = 0; i < columns; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const float value = at_edge + u[at] * (inside - at_edge) + (1 - v) * bend[at] + (1 - u[at]) * vertical_bend;
