@@ -35,6 +35,7 @@ std::vector<double> by_turns(const std::vector<std::function<double()>>& candida
     for (std::size_t i = 0; i < candidates.size(); ++i) seconds[i].push_back(candidates[i]());
   }
   std::vector<double> medians;
+  medians.reserve(seconds.size());
   for (const auto& values : seconds) medians.push_back(median(values));
   return medians;
 }

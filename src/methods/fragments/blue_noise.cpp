@@ -19,7 +19,7 @@ class Crowd {
   Crowd() {
     for (int j = -kReach; j <= kReach; ++j)
       for (int i = -kReach; i <= kReach; ++i)
-        kernel_[static_cast<std::size_t>(j + kReach)][static_cast<std::size_t>(i + kReach)] =
+        kernel_[static_cast<std::size_t>(std::ptrdiff_t{j} + kReach)][static_cast<std::size_t>(std::ptrdiff_t{i} + kReach)] =
             std::exp(-static_cast<float>(i * i + j * j) / (2 * kSigma * kSigma));
   }
   bool has(std::size_t cell) const { return taken_[cell] != 0; }
@@ -48,7 +48,7 @@ class Crowd {
     const int x = static_cast<int>(cell) % kSize, y = static_cast<int>(cell) / kSize;
     for (int j = -kReach; j <= kReach; ++j) {
       float* row = energy_.data() + ((y + j) & (kSize - 1)) * kSize;
-      const float* weights = kernel_[static_cast<std::size_t>(j + kReach)].data();
+      const float* weights = kernel_[static_cast<std::size_t>(std::ptrdiff_t{j} + kReach)].data();
       for (int i = -kReach; i <= kReach; ++i) row[(x + i) & (kSize - 1)] += static_cast<float>(sign) * weights[i + kReach];
     }
   }
