@@ -98,8 +98,14 @@ Refined refine(Stage& stage, const FragmentOptions& options, int channels) {
   const LightPoints points = points_of(stage, static_cast<std::uint32_t>(options.split.rays));
   Refiner refiner(*stage.shot.world, stage.view, *stage.visibility, options, 0);
   refiner.set_light(stage.lights[0], points);
-  for (std::size_t root = 0; root < stage.g.root_count(); ++root)
-    refiner.refine(stage.g, root, stage.geometry(root, options.geometry), 0, refined.signal, stage.statistics);
+  std::vector<TileProgress> progress(stage.g.root_count());
+  for (std::size_t root = 0; root < progress.size(); ++root)
+    refiner.refine(stage.g, root, stage.geometry(root, options.geometry), 0, refined.signal, progress[root], stage.statistics);
+  for (int round = 0; round < options.border_rounds; ++round) {
+    for (TileProgress& p : progress) refiner.find_borders(stage.g, refined.signal, p);
+    for (std::size_t root = 0; root < progress.size(); ++root)
+      refiner.refine_borders(stage.g, root, 0, refined.signal, progress[root], stage.statistics);
+  }
   refined.counts = refiner.counts();
   return refined;
 }
@@ -192,18 +198,18 @@ TEST(FragmentIrradiance, OfPixelsIsLambertsFormula) {
   Stage stage(lamp_over_floor(Occluder::none), {64, 64});
   const std::array<Vec3d, 4> corners = {Vec3d(-0.3, 4, -0.6), Vec3d(0.7, 4, -0.6), Vec3d(0.7, 4, 0.4), Vec3d(-0.3, 4, 0.4)};
   for (const std::uint32_t rays : {64u, 4096u}) {
-    FinestTest finest(*stage.shot.world, stage.view, *stage.visibility, {rays, false}, 0);
+    FinestTest finest(*stage.shot.world, stage.view, *stage.visibility, {.rays = rays, .smooth_rays = rays, .early_out = false}, 0);
     finest.begin(0);
     std::vector<std::uint32_t> pixels;
     for (int y = 3; y < 64; y += 16)
       for (int x = 5; x < 64; x += 16) pixels.push_back(static_cast<std::uint32_t>(stage.g.at(x, y)));
     std::array<std::vector<float>, 3> values;
-    finest.test(stage.g, stage.lights[0], pixels, 0, 3, values, stage.statistics);
+    finest.test(stage.g, stage.lights[0], pixels, 0, rays, 3, values, stage.statistics);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const double expected = 8 * polygon_irradiance(Vec3d(load(stage.g.position, pixels[i])), Vec3d(0, 1, 0), corners) / kPi;
       ASSERT_NEAR(values[0][i], expected, (rays == 64 ? 0.01 : 0.0005) * expected) << rays;
     }
-    finest.test(stage.g, stage.lights[0], pixels, 0, 1, values, stage.statistics);
+    finest.test(stage.g, stage.lights[0], pixels, 0, rays, 1, values, stage.statistics);
     for (std::size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(values[0][i], 1.f);
   }
 }
