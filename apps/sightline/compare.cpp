@@ -64,6 +64,7 @@ void write_difference(const std::string& path, const ColorImage& reference, cons
 int run_compare(const CommandLine& line, Console& console, Context&) {
   const CompareCommand& command = line.compare;
   std::vector<Threshold> thresholds;
+  thresholds.reserve(command.fail_over.size());
   for (const std::string& text : command.fail_over) thresholds.push_back(parse_threshold(text));
   for (const std::string& path : {command.html, command.difference, command.json}) {
     if (!path.empty() && path != "-") check_writable(path);
