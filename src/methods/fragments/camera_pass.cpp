@@ -29,29 +29,16 @@ CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed,
 }
 
 void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec3Batch& radiance, PassStatistics& statistics) {
+  begin(index, static_cast<std::uint32_t>(index), g);
   const RootTile tile = g.root(index);
-  g.glossy[index].clear();
-  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) std::fill_n(g.kind.data() + g.at(tile.x0, y), kRootSize, PixelKind::background);
-  sampled_.begin(static_cast<std::uint32_t>(index));
   // Camera rays travel in packets of 4 x 4 pixels, as the reference's do: an answer at a tie depends on the company a ray keeps.
-  count_ = 0;
   const auto flush = [&] {
-    if (count_ == 0) return;
-    trace(sample, statistics);
-    evaluate_materials();
-    emit();
-    to_sample_.clear();
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const bool surface = kind_[i] != PixelKind::background && kind_[i] != PixelKind::dark;
-      if (surface && hits_.hit(i) && (sampling_ == Sampling::all || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
-        to_sample_.push_back(i);
-    }
-    sampled_.shade({&rays_, &hits_, &surfaces_, &bsdf_, &frame_, plain_.data(), key_.data(), sample}, to_sample_, light_, statistics);
-    write(index, g, radiance);
-    count_ = 0;
+    place(sample);
+    finish(sample, index, g, radiance, statistics);
   };
   for (int by = tile.y0; by < tile.y1; by += kBlock) {
     for (int bx = tile.x0; bx < tile.x1; bx += kBlock) {
+      block_at_[count_ / kLanes] = g.at(bx, by);
       for (int i = 0; i < static_cast<int>(kLanes); ++i, ++count_) {
         const int x = bx + i % kBlock, y = by + i / kBlock;
         inside_[count_] = x < tile.x1 && y < tile.y1;
@@ -64,10 +51,58 @@ void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec
   flush();
 }
 
-void CameraPass::trace(std::uint32_t sample, PassStatistics& statistics) {
-  rays_.resize(count_);
+void CameraPass::render(std::span<const CameraPlace> places, std::size_t index, std::uint32_t scope, GBuffer& g, Vec3Batch& radiance,
+                        PassStatistics& statistics) {
+  begin(index, scope, g);
+  const RootTile tile = g.root(index);
+  for (std::size_t first = 0; first < places.size(); first += kBatch) {
+    const std::span some = places.subspan(first, std::min(kBatch, places.size() - first));
+    count_ = padded(some.size());
+    for (std::size_t i = 0; i < count_; ++i) {
+      const CameraPlace& place = some[std::min(i, some.size() - 1)];
+      if (i % kLanes == 0) {
+        const auto block = static_cast<int>((first + i) / kLanes);
+        block_at_[i / kLanes] = g.at(tile.x0 + block_x(block), tile.y0 + block_y(block));
+      }
+      inside_[i] = i < some.size();
+      pixel_[i] = place.pixel, key_[i] = place.key, sample_[i] = place.sample, u0_[i] = place.u, u1_[i] = place.v;
+    }
+    finish(0, index, g, radiance, statistics);
+  }
+}
+
+void CameraPass::begin(std::size_t index, std::uint32_t scope, GBuffer& g) {
+  const RootTile tile = g.root(index);
+  g.glossy[index].clear();
+  for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) std::fill_n(g.kind.data() + g.at(tile.x0, y), kRootSize, PixelKind::background);
+  sampled_.begin(scope);
+  count_ = 0;
+}
+
+// Where sample `sample` of each pixel goes through it.
+void CameraPass::place(std::uint32_t sample) {
   std::fill_n(sample_.data(), count_, sample);
   sobol_2d(key_.data(), sample_.data(), dimension::kPixel, count_, u0_.data(), u1_.data());
+}
+
+void CameraPass::finish(std::uint32_t sample, std::size_t root, GBuffer& g, Vec3Batch& radiance, PassStatistics& statistics) {
+  if (count_ == 0) return;
+  trace(statistics);
+  evaluate_materials();
+  emit();
+  to_sample_.clear();
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const bool surface = kind_[i] != PixelKind::background && kind_[i] != PixelKind::dark;
+    if (surface && hits_.hit(i) && (sampling_ == Sampling::all || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
+      to_sample_.push_back(i);
+  }
+  sampled_.shade({&rays_, &hits_, &surfaces_, &bsdf_, &frame_, plain_.data(), key_.data(), sample}, to_sample_, light_, statistics);
+  write(root, g, radiance);
+  count_ = 0;
+}
+
+void CameraPass::trace(PassStatistics& statistics) {
+  rays_.resize(count_);
   if (view_.has_lens()) sobol_2d(key_.data(), sample_.data(), dimension::kLens, count_, u2_.data(), u3_.data());
   view_.primary_rays(pixel_.data(), u0_.data(), u1_.data(), u2_.data(), u3_.data(), count_,
                      {rays_.origin.x.data(), rays_.origin.y.data(), rays_.origin.z.data(), rays_.direction.x.data(),
@@ -128,8 +163,7 @@ void CameraPass::write(std::size_t root, GBuffer& g, Vec3Batch& radiance) {
   };
   turn_normals();
   for (std::size_t first = 0; first < count_; first += kLanes) {
-    const int x = static_cast<int>(pixel_[first]) % view_.width(), y = static_cast<int>(pixel_[first]) / view_.width();
-    const std::size_t at = g.at(x, y);
+    const std::size_t at = block_at_[first / kLanes];
     scatter3(first, at, light_, radiance), scatter3(first, at, surfaces_.position, g.position);
     scatter3(first, at, turned_geometric_, g.geometric_normal), scatter3(first, at, turned_shading_, g.shading_normal);
     scatter3(first, at, albedo_, g.albedo);

@@ -26,6 +26,7 @@ struct FragmentOptions {
   float border_jump = 0.25f;            ///< in shares of the light
   float border_jump_saturated = 0.05f;  ///< the same beside fragments that see all or nothing of it
   int nichols_threshold = 6;
+  int edge_samples = 1;  ///< camera rays a pixel on geometric edges
 };
 
 FragmentOptions resolve(const FragmentsSettings& settings);

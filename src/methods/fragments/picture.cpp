@@ -65,20 +65,24 @@ void FragmentPicture::allocate() {
   g_.kind.resize(n), g_.back.resize(n), g_.glossy_index.resize(n);
 }
 
-// Runs body(root tile, thread, statistics) over all root tiles, and adds up what they counted and how long they took.
+// Runs body(tile, thread, statistics) over `count` tiles, and adds up what they counted and how long they took.
 template <class Body>
-void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, Body body) {
+void FragmentPicture::for_tiles(const char* stage, std::size_t count, PassStatistics& statistics, Body body) {
   std::mutex mutex;
-  parallel_for(context_, g_.root_count(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context_, count, 1, [&](std::size_t begin, std::size_t end) {
     const auto start = std::chrono::steady_clock::now();
     PassStatistics local;
-    for (std::size_t root = begin; root < end; ++root) body(root, static_cast<std::size_t>(worker_index()) % cameras_.size(), local);
+    for (std::size_t tile = begin; tile < end; ++tile) body(tile, static_cast<std::size_t>(worker_index()) % cameras_.size(), local);
     local.stage_seconds[stage] += seconds_since(start);
     const std::lock_guard lock(mutex);
     statistics += local;
-    steps_done_ += static_cast<double>(end - begin);
+    steps_done_ = std::min(steps_done_ + static_cast<double>(end - begin), steps_);
     context_.report("render", steps_done_, steps_);
   });
+}
+template <class Body>
+void FragmentPicture::for_roots(const char* stage, PassStatistics& statistics, Body body) {
+  for_tiles(stage, g_.root_count(), statistics, body);
 }
 
 void FragmentPicture::expect(std::uint32_t samples) {
@@ -108,6 +112,7 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
       pyramids_[thread].refine(g_, g_.root(root), options_.geometry, fragments_[root]);
     });
   }
+  if (options_.edge_samples > 1) trace_edges(sample, sampling, statistics);
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     for (std::unique_ptr<Refiner>& r : refiners_) {
       if (!r) {
@@ -118,7 +123,19 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
     }
     render_light(lights_[l], sample, statistics);
   }
+  if (edges_) {
+    for_roots("edges", statistics, [&](std::size_t root, std::size_t, PassStatistics&) { edges_->average(root, radiance_); });
+  }
   write(sample, frame, statistics);
+}
+
+void FragmentPicture::trace_edges(std::uint32_t sample, CameraPass::Sampling sampling, PassStatistics& statistics) {
+  if (!edges_) edges_ = std::make_unique<EdgePass>(job_, view_, options_, context_, sampling);
+  edges_->begin(g_);
+  for_roots("edges", statistics, [&](std::size_t root, std::size_t, PassStatistics&) { edges_->find(g_, root); });
+  edges_->gather();
+  for_tiles("edges", edges_->tile_count(), statistics,
+            [&](std::size_t tile, std::size_t thread, PassStatistics& local) { edges_->trace(g_, tile, sample, thread, local); });
 }
 
 void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics) {
@@ -130,7 +147,7 @@ void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample,
     }
     const LightPoints& points = points_[static_cast<std::size_t>(&light - lights_.data())];
     count_refinement({}, nichols_->refine(g_, fragments_, light, points, refiners_, signal_, statistics), statistics);
-    return upsample_light(light, statistics);
+    return upsample_light(light, sample, statistics);
   }
   for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
     Refiner& refiner = *refiners_[thread];
@@ -139,11 +156,12 @@ void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample,
     count_refinement(before, refiner.counts(), local);
   });
   refine_borders(sample, statistics);
-  upsample_light(light, statistics);
+  upsample_light(light, sample, statistics);
 }
 
 // Tiles look at each other's signals between the rounds, and never while they are written.
 void FragmentPicture::refine_borders(std::uint32_t sample, PassStatistics& statistics) {
+  const double expected = steps_done_ + 2.0 * options_.border_rounds * static_cast<double>(g_.root_count());
   for (int round = 0; round < options_.border_rounds && signal_.channels == 1; ++round) {
     const auto in_turn = [&](auto step) {
       for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
@@ -154,14 +172,15 @@ void FragmentPicture::refine_borders(std::uint32_t sample, PassStatistics& stati
       });
     };
     in_turn([&](Refiner& refiner, std::size_t root, PassStatistics&) { refiner.find_borders(g_, signal_, progress_[root]); });
-    if (std::ranges::all_of(progress_, [](const TileProgress& p) { return p.children.empty(); })) return;
+    if (std::ranges::all_of(progress_, [](const TileProgress& p) { return p.children.empty(); })) break;
     in_turn([&](Refiner& refiner, std::size_t root, PassStatistics& local) {
       refiner.refine_borders(g_, root, sample, signal_, progress_[root], local);
     });
   }
+  steps_done_ = expected;  // rounds that were not needed
 }
 
-void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& statistics) {
+void FragmentPicture::upsample_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics) {
   const auto channels = static_cast<std::size_t>(signal_.channels);
   for (std::size_t c = 0; c < channels; ++c) reserve_in_large_pages(pixels_[c], g_.kind.size()), pixels_[c].resize(g_.kind.size());
   for_roots("upsampling", statistics, [&](std::size_t root, std::size_t, PassStatistics&) {
@@ -181,9 +200,14 @@ void FragmentPicture::upsample_light(const AreaLight& light, PassStatistics& sta
     for_roots("smoothing", statistics,
               [&](std::size_t root, std::size_t, PassStatistics&) { smooth(g_, pixels_[0], signal_.level, g_.root(root), smoothed_); });
   }
+  const std::array<const float*, 3> all = {smoothed ? smoothed_.data() : pixels_[0].data(), pixels_[1].data(), pixels_[2].data()};
+  const std::span<const float* const> pixels(all.data(), channels);
   for_roots("shading", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
-    const std::array<const float*, 3> signal = {smoothed ? smoothed_.data() : pixels_[0].data(), pixels_[1].data(), pixels_[2].data()};
-    composers_[thread].add(g_, g_.root(root), light, std::span<const float* const>(signal.data(), channels), radiance_);
+    composers_[thread].add(g_, g_.root(root), light, pixels, radiance_);
+  });
+  if (!edges_) return;
+  for_tiles("edges", edges_->tile_count(), statistics, [&](std::size_t tile, std::size_t thread, PassStatistics& local) {
+    edges_->light(g_, {light, signal_, pixels}, tile, sample, thread, local);
   });
 }
 
@@ -195,7 +219,8 @@ void FragmentPicture::write(std::uint32_t sample, Frame& frame, PassStatistics& 
     const int columns = (g_.width + Frame::kTileSize - 1) / Frame::kTileSize;
     for (int y = area.y0; y < area.y1; y += Frame::kTileSize) {
       for (int x = area.x0; x < area.x1; x += Frame::kTileSize) {
-        const auto index = static_cast<std::size_t>(y / Frame::kTileSize * columns + x / Frame::kTileSize);
+        const auto row = static_cast<std::size_t>(y / Frame::kTileSize), column = static_cast<std::size_t>(x / Frame::kTileSize);
+        const std::size_t index = row * static_cast<std::size_t>(columns) + column;
         if (frame.first_sample() + frame.samples_done(index) > sample) continue;
         write_tile(frame.tile(index), sample, frame);
         frame.set_samples_done(index, sample + 1 - frame.first_sample());

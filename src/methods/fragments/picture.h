@@ -10,6 +10,7 @@
 #include "methods/fragments/area_light.h"
 #include "methods/fragments/camera_pass.h"
 #include "methods/fragments/compose.h"
+#include "methods/fragments/edge_pass.h"
 #include "methods/fragments/g_buffer.h"
 #include "methods/fragments/light_signal.h"
 #include "methods/fragments/nichols_refiner.h"
@@ -33,10 +34,13 @@ class FragmentPicture {
  private:
   void allocate();
   template <class Body>
+  void for_tiles(const char* stage, std::size_t count, PassStatistics& statistics, Body body);
+  template <class Body>
   void for_roots(const char* stage, PassStatistics& statistics, Body body);
+  void trace_edges(std::uint32_t sample, CameraPass::Sampling sampling, PassStatistics& statistics);
   void render_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics);
   void refine_borders(std::uint32_t sample, PassStatistics& statistics);
-  void upsample_light(const AreaLight& light, PassStatistics& statistics);
+  void upsample_light(const AreaLight& light, std::uint32_t sample, PassStatistics& statistics);
   void write(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
   void write_tile(const Tile& tile, std::uint32_t sample, Frame& frame) const;
   float map_value(std::size_t at, int channel) const;
@@ -57,6 +61,7 @@ class FragmentPicture {
   std::array<AlignedVector<float>, 3> pixels_;
   AlignedVector<float> smoothed_;
   StageMap map_;
+  std::unique_ptr<EdgePass> edges_;
   std::vector<std::vector<Fragment>> fragments_;  ///< by root tile: what geometry left
   std::vector<TileProgress> progress_;            ///< by root tile: of the light at hand
 
