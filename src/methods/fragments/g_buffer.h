@@ -59,10 +59,12 @@ struct GBuffer {
     glossy.resize(root_count());
   }
   std::size_t element_count() const { return static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows); }
+  /// What arrays are sized for: vectors of neighbours read a group of lanes past the end.
+  std::size_t padded_count() const { return element_count() + kLanes; }
   void resize(int picture_width, int picture_height) {
     set_size(picture_width, picture_height);
-    for (AlignedVector<float>* array : arrays()) array->resize(element_count());
-    kind.resize(element_count()), back.resize(element_count()), glossy_index.resize(element_count());
+    for (AlignedVector<float>* array : arrays()) array->resize(padded_count());
+    kind.resize(padded_count()), back.resize(padded_count()), glossy_index.resize(padded_count());
   }
   std::vector<AlignedVector<float>*> arrays() {
     std::vector<AlignedVector<float>*> all = {&error, &depth};

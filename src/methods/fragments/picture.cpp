@@ -54,7 +54,7 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
 // The first touch of a picture's arrays takes as long as some of the stages: threads share it.
 void FragmentPicture::allocate() {
   g_.set_size(view_.width(), view_.height());
-  const std::size_t n = g_.element_count();
+  const std::size_t n = g_.padded_count();
   std::vector<AlignedVector<float>*> arrays = g_.arrays();
   for (AlignedVector<float>* more : {&radiance_.x, &radiance_.y, &radiance_.z, &pixels_[0]}) arrays.push_back(more);
   if (options_.smooth) arrays.push_back(&smoothed_);

@@ -37,7 +37,7 @@ std::uint32_t ProbeTest::set_of(const Fragment& f) const {
   if (points_ && points_->jitter == PointJitter::blue) {
     // The mask twice, far enough apart to have nothing to do with itself.
     constexpr std::uint32_t kShifts = LightPoints::kShifts, kAcross = 23, kDown = 37;
-    const std::uint32_t place = pixel_key(seed_, f.level);
+    const std::uint32_t place = pixel_key(seed_ ^ salt_, f.level);
     const std::uint32_t x = (static_cast<std::uint32_t>(f.x) >> f.level) + (place & 0xff);
     const std::uint32_t y = (static_cast<std::uint32_t>(f.y) >> f.level) + (place >> 8 & 0xff);
     const BlueNoise& noise = BlueNoise::shared();
@@ -45,7 +45,7 @@ std::uint32_t ProbeTest::set_of(const Fragment& f) const {
     return shift(noise.rank(x, y)) + kShifts * shift(noise.rank(x + kAcross, y + kDown));
   }
   const std::uint32_t place = static_cast<std::uint32_t>(f.x) | static_cast<std::uint32_t>(f.y) << 16;
-  return hash_combine(pixel_key(seed_, place), f.level) % LightPoints::kSets;
+  return hash_combine(pixel_key(seed_ ^ salt_, place), f.level) % LightPoints::kSets;
 }
 
 void ProbeTest::set_light(const AreaLight& light, const LightPoints& points) {

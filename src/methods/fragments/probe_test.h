@@ -30,7 +30,11 @@ class ProbeTest {
  public:
   ProbeTest(const World& world, const View& view, Visibility& visibility, std::uint64_t seed);
 
-  void begin(std::uint32_t scope) { worker_->begin(scope); }
+  /// `sample` of the picture: each has light points of its own, so that their mean converges.
+  void begin(std::uint32_t scope, std::uint32_t sample = 0) {
+    worker_->begin(scope);
+    salt_ = static_cast<std::uint64_t>(sample) << 32;
+  }
   /// The light that is asked from now on. `points` must live as long as it is.
   void set_light(const AreaLight& light, const LightPoints& points);
   /// masks[i] of fragments[i], which have level >= 1.
@@ -55,7 +59,7 @@ class ProbeTest {
   Vec3 camera_;
   bool orthographic_;
   bool exact_;
-  std::uint64_t seed_;
+  std::uint64_t seed_, salt_ = 0;
   std::unique_ptr<VisibilityWorker> worker_;
   const AreaLight* light_ = nullptr;
   const LightPoints* points_ = nullptr;

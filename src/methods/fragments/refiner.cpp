@@ -40,7 +40,7 @@ void Refiner::watch(StageMap& map) {
 
 void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
                      TileProgress& progress, PassStatistics& statistics) {
-  probes_.begin(static_cast<std::uint32_t>(index));
+  probes_.begin(static_cast<std::uint32_t>(index), sample);
   finest_test_.begin(static_cast<std::uint32_t>(index));
   const RootTile tile = g.root(index);
   reach_.build(g, tile, *light_);
@@ -66,7 +66,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
 void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
                              PassStatistics& statistics) {
   if (progress.children.empty()) return;
-  probes_.begin(static_cast<std::uint32_t>(index));
+  probes_.begin(static_cast<std::uint32_t>(index), sample);
   finest_test_.begin(static_cast<std::uint32_t>(index));
   reach_.build(g, g.root(index), *light_);
   std::swap(children_, progress.children);

@@ -65,7 +65,7 @@ struct FragmentsSettings {
           {.help = "interpolate the four probes of a fragment instead of averaging them", .choices = {"variant", "off", "on"}});
     visit("smooth", &S::smooth, {.help = "edge-avoiding filter over the visible share in penumbrae", .choices = {"variant", "off", "on"}});
     visit("confirm", &S::confirm,
-          {.help = "probes at random places that confirm a stable fragment of 16 pixels or more; -1 = as the variant says",
+          {.help = "probes at random places that confirm a stable fragment of 8 pixels or more; -1 = as the variant says",
            .minimum = -1,
            .maximum = 4});
     visit("borders", &S::borders,
