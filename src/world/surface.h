@@ -24,7 +24,8 @@ struct SurfaceBatch {
   AlignedVector<std::uint32_t> light;     ///< entry of the LightTable that emits here, or kNoLight
   AlignedVector<std::uint8_t> plain;      ///< 1: untextured Lambert without normal map: albedo holds all there is to know
   Vec3Batch albedo;                       ///< valid where plain
-  /// Only with WorldOptions::shadow_terminator, else empty: to be added to the origin of rays that leave on the side that the ray came from.
+  /// Only with WorldOptions::shadow_terminator, else empty: to be added to the origin of rays that leave on the side that the ray came
+  /// from.
   Vec3Batch shadow_offset;
   std::size_t size = 0;
   void resize(std::size_t n);
