@@ -25,10 +25,5 @@ void reserve_in_large_pages(AlignedVector<T>& array, std::size_t count) {
   if (size >= before + kPage) madvise(bytes + before, (size - before) / kPage * kPage, MADV_HUGEPAGE);  // may fail: then pages are small
 #endif
 }
-inline void reserve_in_large_pages(Vec3Batch& batch, std::size_t count) {
-  reserve_in_large_pages(batch.x, padded(count));
-  reserve_in_large_pages(batch.y, padded(count));
-  reserve_in_large_pages(batch.z, padded(count));
-}
 
 }  // namespace sightline

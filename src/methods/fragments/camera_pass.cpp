@@ -20,6 +20,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, Sampling sampling,
                        Visibility* visibility)
     : world_(world), view_(view), seed_(seed), sampling_(sampling), sampled_(world, view, light_samples, visibility) {
+  has_mixes_ = std::ranges::any_of(world.scene().materials, [](const Material& m) { return std::holds_alternative<MixMaterial>(m.model); });
   for (auto* indices : {&pixel_, &key_, &sample_}) indices->resize(kBatch);
   for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(kBatch);
   inside_.resize(kBatch), plain_.resize(kBatch);
@@ -122,7 +123,7 @@ void CameraPass::evaluate_materials() {
     const Vec3 wo = -load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
     const MaterialId id = surfaces_.material[i] == kDefaultMaterial ? MaterialId{} : MaterialId{surfaces_.material[i]};
     const SurfaceDetail detail = world_.detail(rays_, hits_, i, view_.cone_width() + view_.cone_spread() * hits_.t[i]);
-    float u_mix = sobol_2d(key_[i], sample_[i], dimension::pair_of(0, dimension::kLightPick)).y;
+    float u_mix = has_mixes_ ? sobol_2d(key_[i], sample_[i], dimension::pair_of(0, dimension::kLightPick)).y : 0.f;
     const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
     frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
     if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);

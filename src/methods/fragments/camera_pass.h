@@ -60,6 +60,7 @@ class CameraPass {
   const View& view_;
   std::uint64_t seed_;
   Sampling sampling_;
+  bool has_mixes_ = false;
   SampledLight sampled_;
 
   std::size_t count_ = 0;

@@ -47,7 +47,7 @@ struct GBuffer {
   Vec3Batch position, geometric_normal, shading_normal;
   AlignedVector<float> error;  ///< bound on the error of `position`, per component
   AlignedVector<float> depth;  ///< distance from the camera; +infinity for background
-  Vec3Batch albedo;            ///< of `diffuse` pixels, and the Lambert part of `analytic` ones
+  Vec3Batch albedo;            ///< of the whole BSDF
   AlignedVector<PixelKind> kind;
   AlignedVector<std::uint8_t> back;              ///< 1: seen from behind, normals were turned
   AlignedVector<std::uint32_t> glossy_index;     ///< of `analytic` pixels: into their root tile's list

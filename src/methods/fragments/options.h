@@ -20,9 +20,9 @@ struct FragmentOptions {
   bool smooth = true;
   bool dark_culling = true;
   bool extra_samples = true;
-  int confirm = 1;                      ///< probes that confirm a stable fragment of level 4 or more
-  int penumbra_level = 3;               ///< stable fragments from this level on that partly see the light trace more rays
-  int border_rounds = 2;                ///< how often fragments beside jumps of the signal are refined again
+  int confirm = 1;                      ///< probes that confirm a stable fragment of level 3 or more
+  int penumbra_level = 2;               ///< stable fragments from this level on that partly see the light trace more rays
+  int border_rounds = 3;                ///< how often fragments beside jumps of the signal are refined again
   float border_jump = 0.25f;            ///< in shares of the light
   float border_jump_saturated = 0.05f;  ///< the same beside fragments that see all or nothing of it
   int nichols_threshold = 6;

@@ -270,8 +270,7 @@ float FragmentPicture::map_value(std::size_t at, int channel) const {
 
 void FragmentPicture::write_layers(std::size_t at, std::uint32_t pixel, Frame& frame) const {
   if (g_.kind[at] == PixelKind::background) return;
-  const int x = static_cast<int>(pixel) % g_.width, y = static_cast<int>(pixel) / g_.width;
-  frame.add(Aov::albedo, pixel, g_.kind[at] == PixelKind::analytic ? g_.glossy_at(x, y).bsdf.albedo() : load(g_.albedo, at));
+  frame.add(Aov::albedo, pixel, load(g_.albedo, at));
   frame.add(Aov::normal, pixel, (g_.back[at] ? -1.f : 1.f) * load(g_.shading_normal, at));
   frame.add(Aov::position, pixel, load(g_.position, at));
   frame.add(Aov::depth, pixel, Vec3(g_.depth[at]));

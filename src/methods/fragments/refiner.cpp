@@ -4,24 +4,14 @@
 #include <bit>
 #include <cmath>
 
-#include "methods/fragments/unshadowed.h"
-
 namespace sightline {
 namespace {
 
 constexpr int kConfirmLevel = 3;
 constexpr int kExtraLevel = 3;
-constexpr int kPixelsLevel = 2;  // fragments up to this one become pixels at once where a border runs along them
 // By how much an additional sample may differ from its quadrant's: sampling noise where the light is partly seen, little where it is all
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
-
-struct Pixels {
-  int x0, y0, x1, y1;
-};
-Pixels clipped(const GBuffer& g, const Fragment& f) {
-  return {f.x, f.y, std::min(f.x + f.width(), g.width), std::min(f.y + f.width(), g.height)};
-}
 
 }  // namespace
 
@@ -40,38 +30,36 @@ void Refiner::watch(StageMap& map) {
 
 void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
                      TileProgress& progress, PassStatistics& statistics) {
-  probes_.begin(static_cast<std::uint32_t>(index), sample);
-  finest_test_.begin(static_cast<std::uint32_t>(index));
-  const RootTile tile = g.root(index);
-  reach_.build(g, tile, *light_);
-  clear(g, tile, signal);
-  children_.assign(fragments.begin(), fragments.end());
-  done_.clear();
-  finest_.clear(), geometry_pixels_.clear();
+  progress.done.clear();
+  progress.children.assign(fragments.begin(), fragments.end());
+  begin(g, index, sample);
+  clear(g, g.root(index), signal);
   // What geometry left of level 0 has no neighbours to be smoothed with.
-  std::erase_if(children_, [&](const Fragment& f) {
-    if (f.level > 0) return false;
-    if (reach_.of(f) == ReachPyramid::Reach::all) {
-      geometry_pixels_.push_back(static_cast<std::uint32_t>(g.at(f.x, f.y)));
-      return true;
-    }
-    return false;
+  std::erase_if(progress.children, [&](const Fragment& f) {
+    const bool pixel = f.level == 0 && reach_.of(f) == ReachPyramid::Reach::all;
+    if (pixel) geometry_pixels_.push_back(static_cast<std::uint32_t>(g.at(f.x, f.y)));
+    return pixel;
   });
-  run_waves(g, sample, signal, statistics);
-  write_pixels(g, sample, signal, statistics);
-  std::swap(progress.done, done_);
-  progress.children.clear();
+  refine_children(g, sample, signal, progress, statistics);
 }
 
 void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
                              PassStatistics& statistics) {
   if (progress.children.empty()) return;
+  begin(g, index, sample);
+  refine_children(g, sample, signal, progress, statistics);
+}
+
+void Refiner::begin(const GBuffer& g, std::size_t index, std::uint32_t sample) {
   probes_.begin(static_cast<std::uint32_t>(index), sample);
   finest_test_.begin(static_cast<std::uint32_t>(index));
   reach_.build(g, g.root(index), *light_);
-  std::swap(children_, progress.children);
-  std::swap(done_, progress.done);
   finest_.clear(), geometry_pixels_.clear();
+}
+
+void Refiner::refine_children(const GBuffer& g, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
+                              PassStatistics& statistics) {
+  std::swap(children_, progress.children), std::swap(done_, progress.done);
   run_waves(g, sample, signal, statistics);
   write_pixels(g, sample, signal, statistics);
   std::swap(done_, progress.done);
@@ -111,51 +99,6 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     counts_.fragments += stable_.size();
     done_.insert(done_.end(), stable_.begin(), stable_.end());
   }
-}
-
-// Stable fragments beside which the signal jumps: the jump lies somewhere between their probes and the border. Small ones become pixels,
-// large ones are tested again in smaller squares.
-void Refiner::find_borders(const GBuffer& g, const LightSignal& signal, TileProgress& progress) {
-  const auto value_at = [&](int x, int y) {
-    const int half = (1 << signal.level[g.at(x, y)]) / 2;
-    return half == 0 ? signal.value[0][g.at(x, y)] : signal.value[0][g.at(x & -half, y & -half)];
-  };
-  const auto jumps = [&](int x, int y, int nx, int ny, float least) {
-    if (!g.inside(x, y) || !g.inside(nx, ny)) return false;
-    const std::size_t here = g.at(x, y), there = g.at(nx, ny);
-    if (g.kind[here] != g.kind[there] || signal.flags[there] & LightSignal::kUnlit) return false;
-    if (std::fabs(value_at(x, y) - value_at(nx, ny)) < least) return false;
-    const Vec3 normal = load(g.geometric_normal, here);
-    return glm::dot(load(g.shading_normal, here), load(g.shading_normal, there)) > 0.9f &&
-           std::fabs(glm::dot(load(g.position, there) - load(g.position, here), normal)) < 0.01f * g.depth[here];
-  };
-  std::size_t kept = 0;
-  for (const Fragment& f : progress.done) {
-    const int w = f.width();
-    // All or nothing by 16 rays may be nearly so: what lies beside it tells.
-    const float own = value_at(f.x, f.y);
-    const bool saturated = (own == 0 || own == 1) && value_at(f.x + w / 2, f.y) == own && value_at(f.x, f.y + w / 2) == own &&
-                           value_at(f.x + w / 2, f.y + w / 2) == own;
-    const float least = saturated ? options_.border_jump_saturated : options_.border_jump;
-    bool jump = false;
-    for (int i = 0; i < w && !jump; ++i) {
-      jump = jumps(f.x + i, f.y, f.x + i, f.y - 1, least) || jumps(f.x + i, f.y + w - 1, f.x + i, f.y + w, least) ||
-             jumps(f.x, f.y + i, f.x - 1, f.y + i, least) || jumps(f.x + w - 1, f.y + i, f.x + w, f.y + i, least);
-    }
-    if (!jump) {
-      progress.done[kept++] = f;
-      continue;
-    }
-    --counts_.fragments;
-    if (f.level > kPixelsLevel) {
-      subdivide(f, 0, progress.children);
-      continue;
-    }
-    for (int y = f.y; y < f.y + w; ++y) {
-      for (int x = f.x; x < f.x + w; ++x) progress.children.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0});
-    }
-  }
-  progress.done.resize(kept);
 }
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
@@ -252,107 +195,6 @@ void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal)
     std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});
     for (int c = 0; c < signal.channels; ++c)
       std::fill_n(signal.value[static_cast<std::size_t>(c)].data() + g.at(tile.x0, y), kRootSize, 0.f);
-  }
-}
-
-bool Refiner::out_of_reach(const GBuffer& g, const Fragment& f) const {
-  const auto reached_from = [&](int x, int y) {
-    const std::size_t at = g.at(std::min(x, g.width - 1), std::min(y, g.height - 1));
-    const Vec3 position = load(g.position, at);
-    return !light_->out_of_reach(position, load(g.shading_normal, at)) && !light_->out_of_reach(position, load(g.geometric_normal, at));
-  };
-  const int w = f.width();
-  if (reached_from(f.x + w / 2, f.y + w / 2)) return false;
-  // Large fragments: at the corners too.
-  return f.level == 0 || !(reached_from(f.x, f.y) || reached_from(f.x + w - 1, f.y) || reached_from(f.x, f.y + w - 1) ||
-                           reached_from(f.x + w - 1, f.y + w - 1));
-}
-
-void Refiner::write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const {
-  const Pixels p = clipped(g, f);
-  for (int y = p.y0; y < p.y1; ++y) {
-    std::fill_n(signal.level.data() + g.at(p.x0, y), p.x1 - p.x0, f.level);
-    std::fill_n(signal.flags.data() + g.at(p.x0, y), p.x1 - p.x0, flags);
-  }
-}
-
-void Refiner::write_constant(const GBuffer& g, const Fragment& f, float value, LightSignal& signal) const {
-  const int half = f.width() / 2;
-  for (int q = 0; q < (f.level == 0 ? 1 : 4); ++q) {
-    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
-    for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = value;
-  }
-}
-
-// The visible share of the light at a receiver, by the points of a set; 1 where no point sends anything.
-float Refiner::share(const Receiver& receiver, std::uint32_t set, std::uint64_t mask) const {
-  float all = 0, visible = 0;
-  for (std::uint32_t k = 0; k < points_->count; ++k) {
-    const std::size_t i = static_cast<std::size_t>(set) * points_->count + k;
-    const float term = reflected_term(receiver, load(points_->point, i), load(points_->normal, i), points_->two_sided[i] > 0) *
-                       points_->area[i] * luminance(load(points_->radiance, i));
-    all += term;
-    if (mask >> k & 1) visible += term;
-  }
-  return all > 0 ? visible / all : mask != 0 ? 1.f : 0.f;
-}
-
-// Irradiance / pi, each point weighted by the share of the quadrants that see it [Koa2017, Eq. 3, with the visibility and 1 / K that print
-// lost].
-Color Refiner::irradiance(const Receiver& receiver, std::uint32_t set, const ProbeMasks& masks, int quadrants) const {
-  Color sum(0);
-  for (std::uint32_t k = 0; k < points_->count; ++k) {
-    int seen = 0;
-    for (int q = 0; q < quadrants; ++q) seen += static_cast<int>(masks[static_cast<std::size_t>(q)] >> k & 1);
-    if (seen == 0) continue;
-    const std::size_t i = static_cast<std::size_t>(set) * points_->count + k;
-    const float term = geometry_term(receiver, load(points_->point, i), load(points_->normal, i), points_->two_sided[i] > 0);
-    sum += load(points_->radiance, i) * (term * points_->area[i] * static_cast<float>(seen) / static_cast<float>(quadrants));
-  }
-  return sum;
-}
-
-void Refiner::write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const {
-  const int half = f.width() / 2;
-  const std::uint32_t set = probes_.set_of(f);
-  const std::uint64_t full = all_points();
-  // Averaged probes: one value at the centre. (Pixels of the smallest fragments have their own.)
-  const bool average = !options_.interpolate_probes && f.level > 2;
-  std::array<float, 3> mean{};
-  if (average) {
-    const Receiver centre = receiver_at(g, std::min(f.x + half, g.width - 1), std::min(f.y + half, g.height - 1));
-    if (signal.channels == 1) {
-      for (int q = 0; q < 4; ++q) mean[0] += share(centre, set, masks[static_cast<std::size_t>(q)]) / 4;
-    } else {
-      const Color sum = irradiance(centre, set, masks, 4);
-      mean = {sum.x, sum.y, sum.z};
-    }
-  }
-  for (int q = 0; q < 4; ++q) {
-    const std::uint64_t mask = masks[static_cast<std::size_t>(q)];
-    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
-    const auto receiver = [&] {
-      const IVec2 pixel = probe_pixel(g, f, q);
-      return receiver_at(g, pixel.x, pixel.y);
-    };
-    if (average) {
-      for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = mean[static_cast<std::size_t>(c)];
-    } else if (signal.channels == 1) {
-      signal.value[0][at] = mask == 0 ? 0.f : mask == full ? 1.f : share(receiver(), set, mask);
-    } else {
-      const Color sum = mask == 0 ? Color(0) : irradiance(receiver(), set, {mask, 0, 0, 0}, 1);
-      for (int c = 0; c < 3; ++c) signal.value[static_cast<std::size_t>(c)][at] = sum[c];
-    }
-  }
-}
-
-void Refiner::write_centre(const GBuffer& g, const Fragment& f, std::uint64_t mask, LightSignal& signal) const {
-  const int half = f.width() / 2;
-  const Receiver centre = receiver_at(g, std::min(f.x + half, g.width - 1), std::min(f.y + half, g.height - 1));
-  const Color value = signal.channels == 1 ? Color(share(centre, 0, mask)) : irradiance(centre, 0, {mask, 0, 0, 0}, 1);
-  for (int q = 0; q < (f.level == 0 ? 1 : 4); ++q) {
-    const std::size_t at = g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0));
-    for (int c = 0; c < signal.channels; ++c) signal.value[static_cast<std::size_t>(c)][at] = value[c];
   }
 }
 

@@ -53,7 +53,6 @@ class Refiner {
 
   /// The stages below are public for those who refine by other rules: signals of stable fragments from their masks, of pixels, and of none.
   void clear(const GBuffer& g, const RootTile& tile, LightSignal& signal) const;
-  bool out_of_reach(const GBuffer& g, const Fragment& f) const;
   void write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const;
   void write_constant(const GBuffer& g, const Fragment& f, float value, LightSignal& signal) const;
   void write_stable(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal) const;
@@ -65,6 +64,8 @@ class Refiner {
   RefinementCounts& counts() { return counts_; }
 
  private:
+  void begin(const GBuffer& g, std::size_t index, std::uint32_t sample);
+  void refine_children(const GBuffer& g, std::uint32_t sample, LightSignal& signal, TileProgress& progress, PassStatistics& statistics);
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void classify(const GBuffer& g, LightSignal& signal);
   void split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal);
