@@ -15,10 +15,12 @@ Json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, 
   Json json = {{"view", view.name}, {"size", {view.size_px.x, view.size_px.y}}, {"ce", kEdge}, {"samples", Json::array()}};
   for (const int spp : samples) {
     context.info(fmt::format("bench visibility-cache: shadow maps, {}, {} samples a pixel", view.name, spp));
-    const std::vector<Shot> shots =
-        shoot_by_turns(view, {{.visibility = "exact", .spp = spp}, {.settings = {fmt::format("ce={}", kEdge)}, .spp = spp}},
-                       options.quick ? 1 : 0, context);
-    const Shot &exact = shots[0], &cached = shots[1];
+    const std::vector<Shot> shots = shoot_by_turns(view,
+                                                   {{.visibility = "exact", .spp = spp},
+                                                    {.settings = {fmt::format("ce={}", kEdge)}, .spp = spp},
+                                                    {.settings = {fmt::format("ce={}", kEdge), "counters=3", "depth=6"}, .spp = spp}},
+                                                   options.quick ? 1 : 0, context);
+    const Shot &exact = shots[0], &cached = shots[1], &careful = shots[2];
     const std::vector<std::uint8_t> mask = surface_mask(view, spp, {}, context);
     const auto row_of = [&](const std::string& name, const Shot& shot) {
       const VisibilityCounts& counts = shot.statistics.visibility;
@@ -32,7 +34,8 @@ Json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, 
       row.update(cache_errors(exact.image, shot.image, mask));
       return row;
     };
-    Json rows = {row_of("exact", exact), row_of(fmt::format("cached, C_E = {}", kEdge), cached)};
+    Json rows = {row_of("exact", exact), row_of(fmt::format("cached, C_E = {}", kEdge), cached),
+                 row_of(fmt::format("cached, C_E = {}, counters=3, depth=6", kEdge), careful)};
     for (const int size : sizes) {
       const ShotRequest request{.visibility = "shadow-map", .settings = {fmt::format("resolution={}", size)}, .spp = spp};
       rows.push_back(row_of(fmt::format("shadow maps, {0}x{0}", size), shoot(view, request, context)));

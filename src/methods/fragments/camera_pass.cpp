@@ -125,7 +125,8 @@ void CameraPass::evaluate_materials() {
     const SurfaceDetail detail = world_.detail(rays_, hits_, i, view_.cone_width() + view_.cone_spread() * hits_.t[i]);
     float u_mix = has_mixes_ ? sobol_2d(key_[i], sample_[i], dimension::pair_of(0, dimension::kLightPick)).y : 0.f;
     const MaterialId resolved = resolve_mix(scene, world_.textures(), id, detail.texture, u_mix);
-    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, geometric, wo);
+    frame_[i] = perturb_frame(scene, world_.textures(), resolved, detail.texture, detail.frame, detail.dp_du, detail.dp_dv, detail.dn_du,
+                              detail.dn_dv, geometric, wo);
     if (glm::dot(wo, frame_[i].normal) * glm::dot(wo, geometric) <= 0) frame_[i] = frame_from_normal_tangent(geometric, frame_[i].tangent);
     bsdf_[i] = make_bsdf(scene, world_.textures(), resolved, detail.texture, u_mix);
     form_[i] = sampling_ == Sampling::general ? analytic_form(bsdf_[i]) : std::nullopt;

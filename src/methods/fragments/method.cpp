@@ -15,6 +15,8 @@ const MethodInfo& FragmentsMethod::info() const {
     i.progressive = i.deterministic = true;
     i.lights = {LightKind::rectangle, LightKind::disk, LightKind::mesh};
     i.materials = all_material_kinds();
+    // What only bounds a medium would have to be passed by camera rays, and what lies behind it would be dimmed.
+    std::erase(i.materials, MaterialKind::interface_only);
     return i;
   }();
   return info;
