@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "bench/bench_aims.h"
 
@@ -70,18 +67,17 @@ void shadow_maps(const Json& results, BenchAims& aims) {
   for (const Json& view : results["shadow_maps"]) {
     for (const Json& sample : view["samples"]) {
       const Json& rows = sample["rows"];
-      const auto is = [](const Json& row, std::string_view kind) { return row["name"].get<std::string>().starts_with(kind); };
-      double least = std::numeric_limits<double>::infinity();
-      for (const Json& row : rows) {
-        if (is(row, "shadow maps")) least = std::min(least, row["flip"].get<double>());
-      }
-      for (const Json& row : rows) {
-        if (!is(row, "cached") || !std::isfinite(least)) continue;
-        aims.at_most(fmt::format("{}, {}: FLIP; the aim is the best shadow map's",
-                                 place(view["view"].get<std::string>(), sample["spp"].get<int>(), view["ce"].get<double>()),
-                                 row["name"].get<std::string>()),
-                     row["flip"], least);
-      }
+      // The first is exact; then come the cache's, then the maps.
+      const auto of_cache = [](const Json& row) { return row["name"].get<std::string>().starts_with("cached"); };
+      std::size_t maps = 2;
+      while (maps < rows.size() && of_cache(rows[maps])) ++maps;
+      if (maps >= rows.size()) continue;
+      double least = rows[maps]["flip"].get<double>();
+      for (std::size_t i = maps + 1; i < rows.size(); ++i) least = std::min(least, rows[i]["flip"].get<double>());
+      const std::string where = place(view["view"].get<std::string>(), sample["spp"].get<int>(), view["ce"].get<double>());
+      for (std::size_t i = 1; i < maps; ++i)
+        aims.at_most(fmt::format("{}, {}: FLIP; the aim is the best shadow map's", where, rows[i]["name"].get<std::string>()),
+                     rows[i]["flip"], least);
     }
   }
 }
