@@ -1,0 +1,50 @@
+// A BRDF times cosine as summed-area tables over the disk of light directions, one a view.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/core/aligned.h"
+#include "base/core/context.h"
+#include "base/math/vec.h"
+#include "shade/bsdf.h"
+
+namespace sightline::square_lights {
+
+/// 32 x 32 cells over [-1, 1]² of the disk; a table holds 33 x 33 corners, each the integral over all cells left of and above it, as four
+/// floats (red, green, blue, nothing), so that two neighbours along a row are one load.
+class BrdfTable {
+ public:
+  static constexpr int kCells = 32, kCorners = 33, kViews = 32;
+  static constexpr std::size_t kSliceFloats = std::size_t{kCorners} * kCorners * 4;
+
+  /// Tables of `bsdf`: by view angle alone (32 of them over [0, pi/2]) where it looks the same turned about the normal, else for 32 x 32
+  /// views of the disk. Cells are means of `samples` x `samples` points, zero outside the disk. Delta lobes are left out; light from below
+  /// the surface too. Throws Error{interrupted} when cancelled.
+  static BrdfTable build(const Bsdf& bsdf, int samples, const Context& context);
+
+  bool isotropic() const { return isotropic_; }
+  std::size_t bytes() const { return corners_.size() * sizeof(float); }
+
+  /// Up to four tables and their weights for a view direction (local, unit, z > 0): two by angle, or four of the disk. `turn` is what p has
+  /// to be turned by before it is looked up: (cos, sin) of minus the view's azimuth, (1, 0) for anisotropic tables.
+  struct Slices {
+    const float* table[4] = {};
+    float weight[4] = {};
+    int count = 0;
+    Vec2 turn{1, 0};
+  };
+  Slices slices(const Vec3& wo) const;
+  /// Mean over the square of half diagonal `r_p` around `p` (not yet turned), of f cos as radiance per radiance and steradian: the integral
+  /// over the square, which may leave the disk, by 2 r_p². The scalar definition of what the lanes do.
+  Color mean(const Slices& slices, const Vec2& p, float r_p) const;
+
+ private:
+  bool isotropic_ = true;
+  AlignedVector<float> corners_;  ///< [view][row][column][4]
+};
+
+/// Whether a BSDF looks the same however it is turned about the normal.
+bool is_isotropic(const Bsdf& bsdf);
+
+}  // namespace sightline::square_lights
