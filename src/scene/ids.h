@@ -24,5 +24,6 @@ using MeshId = Id<struct MeshTag>;
 using InstanceId = Id<struct InstanceTag>;
 using NodeId = Id<struct NodeTag>;
 using MediumId = Id<struct MediumTag>;
+using SkinId = Id<struct SkinTag>;
 
 }  // namespace sightline

@@ -53,7 +53,9 @@ struct Light {
   NodeId node;  ///< valid: `shape` is in this node's space and follows it when the scene is posed
 };
 
-enum class EnvironmentMapping { latlong, angular, octahedral };
+/// cube: six square faces of n x n texels below one another (n x 6n), in the order and orientation of shade/cube_map.h; radiance is
+/// constant over a texel. The others are read bilinearly.
+enum class EnvironmentMapping { latlong, angular, octahedral, cube };
 
 /// Light from infinitely far, from an image or constant.
 struct Environment {

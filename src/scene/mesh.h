@@ -10,6 +10,7 @@
 #include "base/core/shared_array.h"
 #include "base/math/bounds.h"
 #include "base/math/vec.h"
+#include "scene/deformation.h"
 #include "scene/ids.h"
 
 namespace sightline {
@@ -49,6 +50,13 @@ struct Mesh {
   Bounds bounds;                       ///< of `positions` or of the source
   std::shared_ptr<MeshSource> source;  ///< set instead of arrays while the mesh has not been materialised
 
+  /// Set where the vertices change with time: posing the scene replaces positions, normals, tangents and bounds by deformed ones. Such a
+  /// mesh is used by the instances of one node only. With a skin the vertices are in world space, and the instance's transform is 1.
+  std::shared_ptr<const Deformation> deformation;
+  SkinId skin;
+  NodeId weights_node;  ///< node with the weights of the morph targets
+
+  bool is_deformable() const { return deformation != nullptr; }
   MaterialId material_of(std::size_t triangle) const {
     if (materials.empty()) return {};
     return materials[triangle_materials.empty() ? 0 : triangle_materials[triangle]];

@@ -1,37 +1,18 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/deform.h"
+#include "scene/key_segment.h"
 #include "scene/scene.h"
 
 namespace sightline {
 namespace {
 
-/// Where a time falls between two keys: the first of them and the fraction of the way to the next. Clamped at the ends.
-struct Segment {
-  std::size_t first = 0;
-  float fraction = 0;
-  float duration_s = 0;
-};
-
-Segment find_segment(const std::vector<float>& times_s, float time_s) {
-  if (times_s.size() < 2 || !(time_s > times_s.front())) return {};
-  if (time_s >= times_s.back()) return {times_s.size() - 1, 0, 0};
-  const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
-  const auto first = static_cast<std::size_t>(next - times_s.begin()) - 1;
-  const float duration_s = times_s[first + 1] - times_s[first];
-  return {first, (time_s - times_s[first]) / duration_s, duration_s};
-}
-
-/// Cubic Hermite spline over one segment [glTF2, Appendix C]: stored tangents are per second, hence the factor of its duration.
-Vec4 cubic_spline(const Track& track, const Segment& segment) {
+Vec4 cubic_spline(const Track& track, const KeySegment& segment) {
   const std::size_t k = 3 * segment.first;
   const Vec4 p0 = track.values[k + 1];
   if (segment.fraction == 0) return p0;
-  const Vec4 m0 = segment.duration_s * track.values[k + 2];
-  const Vec4 m1 = segment.duration_s * track.values[k + 3];
-  const Vec4 p1 = track.values[k + 4];
-  const float t = segment.fraction, t2 = t * t, t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * p0 + (t3 - 2 * t2 + t) * m0 + (3 * t2 - 2 * t3) * p1 + (t3 - t2) * m1;
+  return hermite(segment, p0, track.values[k + 2], track.values[k + 3], track.values[k + 4]);
 }
 
 /// Spherical interpolation along the shorter arc, since q and -q are the same rotation.
@@ -48,7 +29,7 @@ Vec4 slerp(Vec4 a, Vec4 b, float t) {
 }
 
 Vec4 evaluate(const Track& track, float time_s, bool is_rotation) {
-  const Segment segment = find_segment(track.times_s, time_s);
+  const KeySegment segment = find_segment(track.times_s, time_s);
   switch (track.interpolation) {
     case Interpolation::step:
       return track.values[segment.first];
@@ -128,6 +109,15 @@ std::vector<Mat4> node_matrices(const Scene& scene, float time_s) {
   return world;
 }
 
+std::vector<bool> moving_nodes(const Scene& scene) {
+  std::vector<bool> moves(scene.nodes.size());
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    moves[i] = node.is_animated() || (node.parent.index < i && moves[node.parent.index]);
+  }
+  return moves;
+}
+
 Scene pose(Scene scene, float time_s) {
   const std::vector<Mat4> world = node_matrices(scene, time_s);
   for (Instance& instance : scene.instances) {
@@ -146,6 +136,14 @@ Scene pose(Scene scene, float time_s) {
     if (light.node.index >= world.size()) continue;
     std::visit(PlaceLight{world[light.node.index]}, light.shape);
     light.node = {};
+  }
+  for (Mesh& mesh : scene.meshes) {
+    if (!mesh.is_deformable()) continue;
+    std::vector<float> weights;
+    if (mesh.weights_node.index < scene.nodes.size()) weights = morph_weights(scene.nodes[mesh.weights_node.index], time_s);
+    std::vector<Mat4> joints;
+    if (mesh.skin.index < scene.skins.size()) joints = joint_matrices(scene.skins[mesh.skin.index], world);
+    deform(mesh, weights, joints);
   }
   return scene;
 }

@@ -59,6 +59,18 @@ std::uint64_t scene_bytes(const Scene& scene) {
   const auto add = [&](const void* data, std::uint64_t size) {
     if (data != nullptr && seen.insert(data).second) bytes += size;
   };
+  const auto add_deformation = [&](const Deformation& d) {
+    add(d.positions.data(), d.positions.size_bytes());
+    add(d.normals.data(), d.normals.size_bytes());
+    add(d.tangents.data(), d.tangents.size_bytes());
+    add(d.joints.data(), d.joints.size_bytes());
+    add(d.joint_weights.data(), d.joint_weights.size_bytes());
+    for (const MorphTarget& target : d.targets) {
+      add(target.positions.data(), target.positions.size_bytes());
+      add(target.normals.data(), target.normals.size_bytes());
+      add(target.tangents.data(), target.tangents.size_bytes());
+    }
+  };
   for (const Mesh& mesh : scene.meshes) {
     add(mesh.positions.data(), mesh.positions.size_bytes());
     add(mesh.normals.data(), mesh.normals.size_bytes());
@@ -66,6 +78,7 @@ std::uint64_t scene_bytes(const Scene& scene) {
     add(mesh.tangents.data(), mesh.tangents.size_bytes());
     add(mesh.triangles.data(), mesh.triangles.size_bytes());
     add(mesh.triangle_materials.data(), mesh.triangle_materials.size_bytes());
+    if (mesh.deformation) add_deformation(*mesh.deformation);
   }
   for (const ImageAsset& asset : scene.images) {
     if (asset.image) add(asset.image.get(), asset.image->size_bytes());

@@ -36,6 +36,7 @@ struct Scene {
   std::optional<Environment> environment;
   std::vector<Camera> cameras;
   std::vector<Node> nodes;
+  std::vector<Skin> skins;
   RenderHints hints;
   /// What the loaders dropped or could not honour, one line each; also sent to the log when found.
   std::vector<std::string> warnings;
@@ -55,8 +56,12 @@ std::uint64_t scene_bytes(const Scene& scene);
 Mat4 node_matrix(const Node& node, float time_s);
 /// World-from-node matrices of all nodes at time_s (clamped to the tracks' ends).
 std::vector<Mat4> node_matrices(const Scene& scene, float time_s);
-/// The scene with every instance, camera and light that hangs on a node placed as at time_s. Lights are then in world space and leave
-/// their node, so another time is posed from the original scene.
+/// For each node whether it or one of its ancestors is animated.
+std::vector<bool> moving_nodes(const Scene& scene);
+/// Weights of the morph targets of a node's mesh at time_s; as many as the node has.
+std::vector<float> morph_weights(const Node& node, float time_s);
+/// The scene with every instance, camera and light that hangs on a node placed and every deformable mesh bent as at time_s. Lights are then
+/// in world space and leave their node, so another time is posed from the original scene.
 Scene pose(Scene scene, float time_s);
 /// A camera that frames `bounds` as docs/conventions.md says: from direction (1, 0.6, 1), 40° on the narrower axis.
 Camera framing_camera(const Bounds& bounds);

@@ -115,7 +115,8 @@ Placement place_meshes(const Scene& scene, const Context& context, const Placeme
     const Earlier before = found == earlier.end() ? Earlier{} : found->second;
     const bool same_as_before =
         before.uses == 1 && before.placed->kind == Kind::baked && before.placed->world_from_object == instance.world_from_object;
-    const bool moves = instance.node.valid() && instance.node.index < animated.size() && animated[instance.node.index];
+    const bool moves =
+        mesh.is_deformable() || (instance.node.valid() && instance.node.index < animated.size() && animated[instance.node.index]);
     const bool edited = previous && !same_as_before;
     if (mesh.positions.empty() || mesh.triangles.empty() || shape.collapsed || is_nothing(scene, instance, mesh)) {
       placed.kind = Kind::absent;

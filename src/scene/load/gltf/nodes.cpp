@@ -89,16 +89,6 @@ bool is_finite_matrix(const Mat4& m) {
   return true;
 }
 
-/// Whether a node or one of its ancestors is animated.
-std::vector<bool> moving_nodes(const Scene& scene) {
-  std::vector<bool> moves(scene.nodes.size());
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    const Node& node = scene.nodes[i];
-    moves[i] = node.is_animated() || (node.parent.valid() && moves[node.parent.index]);
-  }
-  return moves;
-}
-
 /// Removes what a matrix makes vanish (scale 0 on some axis) or overflow; what moves may grow from nothing.
 void drop_unusable_instances(Import& import) {
   const std::vector<bool> moves = moving_nodes(import.scene);
