@@ -8,6 +8,7 @@
 #include "base/core/error.h"
 #include "scene/builtin/parts.h"
 #include "scene/builtin/scenes.h"
+#include "scene/builtin/smooth_normals.h"
 #include "scene/builtin/subdivide.h"
 #include "scene/load/load.h"
 
@@ -72,35 +73,61 @@ Scene frozen(Scene scene) {
   scene.hints = {};
   scene.framing.reset();
   scene.nodes.clear();
+  scene.skins.clear();
+  for (Mesh& mesh : scene.meshes) {
+    mesh.deformation.reset();
+    mesh.skin = {};
+    mesh.weights_node = {};
+  }
   scene.animation_duration_s = 0;
   for (Instance& instance : scene.instances) instance.node = {};
   return scene;
 }
 
+enum class Normals { file, smooth };
+
+SettingInfo normals_info() {
+  return {.help = "of content meshes without normals: none (facets show), or means of the triangles around each vertex",
+          .choices = {"file", "smooth"}};
+}
+
+Scene load_content(const std::string& spec, Normals normals, const LoadOptions& options, const Context& context) {
+  Scene scene = frozen(load_content(spec, options, context));
+  if (normals == Normals::smooth) add_smooth_normals(scene, context);
+  return scene;
+}
+
 struct RoomSettings {
   std::string content = "hairball";
+  Normals normals = Normals::file;
   template <class Visitor>
   static void describe(Visitor&& visit) {
     visit("content", &RoomSettings::content, {.help = "scene file (relative to the data directory) or builtin scene to put in the room"});
+    visit("normals", &RoomSettings::normals, normals_info());
   }
 };
 
 Scene build_room(const RoomSettings& s, const LoadOptions& options, const Context& context) {
-  return place_in_room(load_content(s.content, options, context), false);
+  return place_in_room(load_content(s.content, s.normals, options, context), false);
 }
 Scene build_open_room(const RoomSettings& s, const LoadOptions& options, const Context& context) {
-  return place_in_room(load_content(s.content, options, context), true);
+  return place_in_room(load_content(s.content, s.normals, options, context), true);
 }
 
 struct GroundSettings {
   std::string content = "hairball";
+  Normals normals = Normals::file;
   std::uint64_t min_vertices = 0;
+  float spin = 0;
   template <class Visitor>
   static void describe(Visitor&& visit) {
     visit("content", &GroundSettings::content,
           {.help = "scene file (relative to the data directory) or builtin scene to put on the ground"});
+    visit("normals", &GroundSettings::normals, normals_info());
     visit("min_vertices", &GroundSettings::min_vertices,
           {.help = "split every triangle in four until the content has this many vertices", .minimum = 0, .maximum = 1e8});
+    visit("spin", &GroundSettings::spin,
+          {.help = "time in which the content turns once about +Y, 0 = it stands still", .minimum = 0, .maximum = 1e6, .unit = "s"});
   }
 };
 
@@ -129,13 +156,40 @@ Mesh ground_mesh(const Vec3& center, float edge) {
   return mesh;
 }
 
+/// Hangs all instances on a node that turns once about the vertical line through `center`, counter-clockwise seen from above.
+void add_spin(Scene& scene, const Vec3& center, float seconds) {
+  if (!scene.spheres.empty()) throw usage_error("analytic spheres cannot turn").remedy("leave out spin=, or use content of triangles");
+  Node turn;
+  turn.name = "spin";
+  turn.translation = center;
+  for (int quarter = 0; quarter <= 4; ++quarter) {
+    const float half_angle_rad = 0.25f * kPi * static_cast<float>(quarter);
+    turn.rotation_track.times_s.push_back(0.25f * seconds * static_cast<float>(quarter));
+    turn.rotation_track.values.emplace_back(0, std::sin(half_angle_rad), 0, std::cos(half_angle_rad));
+  }
+  scene.nodes.push_back(std::move(turn));
+  for (Instance& instance : scene.instances) {
+    Node placed;
+    placed.name = instance.name;
+    placed.parent = NodeId(0);
+    placed.has_matrix = true;
+    placed.matrix = instance.world_from_object;
+    placed.matrix[3] -= Vec4(center, 0);
+    instance.node = NodeId(scene.nodes.size());
+    scene.nodes.push_back(std::move(placed));
+  }
+  scene.animation_duration_s = seconds;
+}
+
 Scene build_ground(const GroundSettings& s, const LoadOptions& options, const Context& context) {
-  Scene scene = frozen(load_content(s.content, options, context));
+  // Normals come first: subdivision interpolates them, while those of the parts of a flat triangle would show it flat again.
+  Scene scene = load_content(s.content, s.normals, options, context);
   subdivide(scene, s.min_vertices, context);
   const Bounds bounds = scene_bounds(scene);
   if (bounds.is_empty()) throw input_error("the content has no geometry");
   const Vec3 center = bounds.center();
   const float radius = farthest_vertex(scene, center);
+  if (s.spin > 0) add_spin(scene, center, s.spin);
   add_mesh(scene, ground_mesh({center.x, bounds.lower.y, center.z}, 4 * radius), add_diffuse(scene, "ground", Color(0.5f)));
   scene.framing = bounds;
   scene.cameras.push_back(framing_camera(bounds));

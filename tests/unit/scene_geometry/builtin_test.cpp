@@ -43,6 +43,22 @@ TEST(Builtin, HairballHasAboutTheTrianglesAskedFor) {
   EXPECT_NEAR(static_cast<double>(scene.meshes[0].triangle_count()), 100000, 600);
 }
 
+TEST(Ground, SpinTurnsTheContentAboutItsOwnAxisAndNotTheGround) {
+  const Context context;
+  const Scene scene = build_builtin("ground,content=furnace?shape=mesh,spin=8", {}, context);
+  EXPECT_EQ(scene.animation_duration_s, 8);
+  const Scene still = pose(scene, 0), quarter = pose(scene, 2), later = pose(scene, 5);
+  EXPECT_EQ(still.instances[0].world_from_object,
+            build_builtin("ground,content=furnace?shape=mesh", {}, context).instances[0].world_from_object);
+  EXPECT_EQ(still.instances[1].world_from_object, quarter.instances[1].world_from_object);
+  // The ball stands around the origin: +Z goes to +X after a quarter, counter-clockwise seen from above.
+  EXPECT_LT(glm::length(transform_point(quarter.instances[0].world_from_object, {0, 0, 1}) - Vec3(1, 0, 0)), 1e-5f);
+  const float angle_rad = 2 * kPi * 5 / 8;
+  EXPECT_LT(
+      glm::length(transform_point(later.instances[0].world_from_object, {0, 0, 1}) - Vec3(std::sin(angle_rad), 0, std::cos(angle_rad))),
+      1e-5f);
+}
+
 TEST(Isosurface, IsAClosedManifoldAcrossChunks) {
   const Context context;
   const Scene scene = build_builtin("isosurface,resolution=50,frequency=6", {.data_directory = {}, .keep_sources = true}, context);
