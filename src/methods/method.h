@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/bake_store.h"
 #include "base/core/context.h"
 #include "base/settings/settings.h"
 #include "film/frame.h"
@@ -29,7 +30,10 @@ enum class MaterialKind : std::uint8_t {
   phong,
   diffuse_transmission,
   mix,
-  interface_only
+  interface_only,
+  ward,
+  cook_torrance,
+  measured
 };
 std::string_view name_of(LightKind kind);
 std::string_view name_of(MaterialKind kind);
@@ -49,6 +53,8 @@ struct MethodInfo {
 class Bake {
  public:
   virtual ~Bake() = default;
+  /// Memory that it holds, mapped files included.
+  virtual std::uint64_t bytes() const { return 0; }
 };
 
 /// Everything one pass needs besides the frame.
@@ -58,6 +64,7 @@ struct RenderJob {
   SettingsValue settings;
   Visibility* visibility = nullptr;  ///< of this picture alone; a pass begins with Visibility::begin_pass
   const Bake* bake = nullptr;
+  BakeStore* bakes = nullptr;  ///< where prepare() keeps what it makes; null: nowhere
   int max_bounces = 8;
   int light_samples = 0;        ///< 0 = the method's own
   std::uint32_t total_spp = 1;  ///< of the whole picture, for modes that depend on it

@@ -29,7 +29,7 @@ std::vector<LightKind> all_light_kinds() {
 
 std::vector<MaterialKind> all_material_kinds() {
   std::vector<MaterialKind> kinds;
-  for (int k = 0; k <= static_cast<int>(MaterialKind::interface_only); ++k) kinds.push_back(static_cast<MaterialKind>(k));
+  for (int k = 0; k <= static_cast<int>(MaterialKind::measured); ++k) kinds.push_back(static_cast<MaterialKind>(k));
   return kinds;
 }
 
@@ -51,8 +51,9 @@ std::string_view name_of(LightKind kind) {
 }
 
 std::string_view name_of(MaterialKind kind) {
-  constexpr std::array<std::string_view, 9> names = {"diffuse", "metallic-roughness",   "conductor", "dielectric", "coated-diffuse",
-                                                     "phong",   "diffuse-transmission", "mix",       "interface"};
+  constexpr std::array<std::string_view, std::variant_size_v<SurfaceModel>> names = {
+      "diffuse", "metallic-roughness", "conductor", "dielectric",    "coated-diffuse", "phong", "diffuse-transmission",
+      "mix",     "interface",          "ward",      "cook-torrance", "measured"};
   return names[static_cast<std::size_t>(kind)];
 }
 

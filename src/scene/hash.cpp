@@ -106,12 +106,29 @@ class Hasher {
   void add(const DiffuseTransmissionMaterial& m) { add_all(m.reflectance, m.transmittance); }
   void add(const MixMaterial& m) { add_all(m.first, m.second, m.amount); }
   void add(const InterfaceMaterial&) {}
+  void add(const WardMaterial& m) { add_all(m.diffuse, m.specular, m.alpha_x, m.alpha_y); }
+  void add(const CookTorranceMaterial& m) { add_all(m.diffuse, m.specular, m.roughness, m.f0); }
+  void add(const MeasuredMaterial& m) { add(m.content_hash); }
   void add(const Material& m) {
     add_all(m.model, m.emission, m.emission_two_sided, m.normal_map, m.normal_scale, m.bump, m.bump_scale, m.alpha_mode, m.alpha_cutoff,
             m.alpha, m.two_sided, m.interior);
   }
   void add(const Medium& m) { add(m.sigma_a); }
 
+  void add(const MorphTarget& t) {
+    add_array(t.positions.span());
+    add_array(t.normals.span());
+    add_array(t.tangents.span());
+  }
+  void add(const Deformation& d) {
+    add_array(d.positions.span());
+    add_array(d.normals.span());
+    add_array(d.tangents.span());
+    add_all(d.targets, d.influences);
+    add_array(d.joints.span());
+    add_array(d.joint_weights.span());
+  }
+  void add(const Skin& s) { add_all(s.joints, s.joint_from_rest); }
   void add(const Mesh& mesh) {
     add_array(mesh.positions.span());
     add_array(mesh.normals.span());
@@ -123,6 +140,11 @@ class Hasher {
     // A source is too big to be read for its hash: its name (which holds the parameters), counts and box stand for it.
     add(mesh.source != nullptr);
     if (mesh.source) add_all(mesh.name, mesh.source->vertex_count(), mesh.source->triangle_count());
+    add(mesh.deformation != nullptr);
+    if (mesh.deformation) {
+      add(*mesh.deformation);
+      add_all(mesh.skin, mesh.weights_node);
+    }
   }
   void add(const Instance& i) { add_all(i.mesh, i.world_from_object, i.material_override, i.node); }
   void add(const Sphere& s) { add_all(s.center, s.radius, s.world_from_object, s.reverse_orientation, s.material); }
@@ -145,8 +167,14 @@ class Hasher {
     add_array(std::span(t.times_s));
     add_array(std::span(t.values));
   }
+  void add(const WeightsTrack& t) {
+    add(t.interpolation);
+    add_array(std::span(t.times_s));
+    add_array(std::span(t.values));
+  }
   void add(const Node& n) {
-    add_all(n.parent, n.has_matrix, n.matrix, n.translation, n.rotation, n.scale, n.translation_track, n.rotation_track, n.scale_track);
+    add_all(n.parent, n.has_matrix, n.matrix, n.translation, n.rotation, n.scale, n.translation_track, n.rotation_track, n.scale_track,
+            n.weights, n.weights_track);
   }
   void add(const RenderHints& h) { add_all(h.size_px, h.max_bounces, h.spp); }
 
@@ -177,6 +205,7 @@ std::uint64_t scene_hash(const Scene& scene) {
   hasher.add(scene.environment);
   hasher.add(scene.cameras);
   hasher.add(scene.nodes);
+  hasher.add(scene.skins);
   hasher.add(scene.hints);
   hasher.add(scene.framing);
   return hasher.digest();

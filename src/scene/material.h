@@ -1,6 +1,8 @@
 // Materials as scene files describe them: a reflectance model with textured parameters, and what all models share.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +12,8 @@
 #include "scene/texture.h"
 
 namespace sightline {
+
+class MeasuredReflectance;  // shade/measured_reflectance.h
 
 /// Lambertian reflection.
 struct DiffuseMaterial {
@@ -57,9 +61,27 @@ struct MixMaterial {
 };
 /// No surface: rays pass (pbrt "interface"); still separates media.
 struct InterfaceMaterial {};
+/// Ward's elliptical Gaussian lobe over Lambert; `alpha_x` along the tangent.
+struct WardMaterial {
+  ColorParam diffuse{0.1f}, specular{0.3f};
+  FloatParam alpha_x{0.2f}, alpha_y{0.2f};
+};
+/// Cook–Torrance over Lambert: Beckmann's facets of rms slope `roughness`; `f0` is a facet's reflectance at normal incidence.
+struct CookTorranceMaterial {
+  ColorParam diffuse{0.2f}, specular{0.8f};
+  FloatParam roughness{0.3f};
+  ColorParam f0{0.04f};
+};
+/// Reflectance as it was measured; without data Lambert 0.7. Made by load_measured_material.
+struct MeasuredMaterial {
+  std::shared_ptr<const MeasuredReflectance> data;
+  std::string file;                ///< where it came from, for messages
+  std::uint64_t content_hash = 0;  ///< of the data
+};
 
-using SurfaceModel = std::variant<DiffuseMaterial, MetallicRoughnessMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
-                                  PhongMaterial, DiffuseTransmissionMaterial, MixMaterial, InterfaceMaterial>;
+using SurfaceModel =
+    std::variant<DiffuseMaterial, MetallicRoughnessMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial, PhongMaterial,
+                 DiffuseTransmissionMaterial, MixMaterial, InterfaceMaterial, WardMaterial, CookTorranceMaterial, MeasuredMaterial>;
 
 enum class AlphaMode { opaque, mask, blend };
 

@@ -7,18 +7,22 @@
 #include "shade/bsdf_types.h"
 #include "shade/coated_diffuse.h"
 #include "shade/conductor.h"
+#include "shade/cook_torrance.h"
 #include "shade/dielectric.h"
 #include "shade/diffuse_transmission.h"
 #include "shade/lambert.h"
+#include "shade/measured_brdf.h"
 #include "shade/metallic_roughness.h"
 #include "shade/phong.h"
+#include "shade/ward.h"
 
 namespace sightline {
 
 /// Small, trivially copyable; made by make_bsdf for one shading point.
 class Bsdf {
  public:
-  using Model = std::variant<Lambert, MetallicRoughness, Conductor, Dielectric, CoatedDiffuse, Phong, DiffuseTransmission>;
+  using Model = std::variant<Lambert, MetallicRoughness, Conductor, Dielectric, CoatedDiffuse, Phong, DiffuseTransmission, Ward,
+                             CookTorrance, MeasuredBrdf>;
 
   Bsdf() = default;
   explicit Bsdf(const Model& model) : model_(model) {}
@@ -42,6 +46,10 @@ class Bsdf {
   }
   bool is_delta() const {
     return std::visit([](const auto& m) { return m.is_delta(); }, model_);
+  }
+  /// Whether it looks the same however it is turned about the normal.
+  bool is_isotropic() const {
+    return std::visit([](const auto& m) { return m.is_isotropic(); }, model_);
   }
   /// The Lambert model if that is all there is: batches of these take the vector path.
   const Lambert* lambert() const { return std::get_if<Lambert>(&model_); }

@@ -49,5 +49,6 @@ class DeltaLobes {
 //   DeltaLobes delta_lobes(Vec3 wo, TransportMode) const;                                     // none unless some limit is smooth
 //   Color albedo() const;                                                                    // for the albedo AOV, in [0,1]
 //   bool is_delta() const;                                                                   // no non-delta part: skip light sampling
+//   bool is_isotropic() const;                                                               // the same however turned about z
 
 }  // namespace sightline

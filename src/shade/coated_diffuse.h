@@ -24,6 +24,7 @@ class CoatedDiffuse {
   void prepare(const Vec3& w);
   Color albedo() const;
   bool is_delta() const { return false; }
+  bool is_isotropic() const { return ggx_.alpha().x == ggx_.alpha().y; }
 
  private:
   float coat_reflectance(float cos_theta) const;

@@ -20,6 +20,7 @@ class Conductor {
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
   Color albedo() const;
   bool is_delta() const { return ggx_.is_smooth(); }
+  bool is_isotropic() const { return ggx_.alpha().x == ggx_.alpha().y; }
   const Color& eta() const { return eta_; }
   const Color& k() const { return k_; }
   const Color& tint() const { return tint_; }

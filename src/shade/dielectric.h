@@ -21,6 +21,7 @@ class Dielectric {
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
   Color albedo() const { return Color(1); }
   bool is_delta() const { return delta_; }
+  bool is_isotropic() const { return ggx_.alpha().x == ggx_.alpha().y; }
 
  private:
   std::optional<BsdfSample> sample_smooth(const Vec3& wo, float u_lobe, TransportMode mode) const;

@@ -18,6 +18,7 @@ class DiffuseTransmission {
   DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return reflectance_ + transmittance_; }
   bool is_delta() const { return false; }
+  bool is_isotropic() const { return true; }
 
  private:
   Color reflectance_, transmittance_;

@@ -30,6 +30,7 @@ struct Lambert {
   DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return glm::clamp(reflectance, 0.f, 1.f); }
   bool is_delta() const { return false; }
+  bool is_isotropic() const { return true; }
 };
 
 }  // namespace sightline

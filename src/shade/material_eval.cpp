@@ -54,6 +54,16 @@ struct BsdfMaker {
   Bsdf::Model operator()(const DiffuseTransmissionMaterial& m) const {
     return DiffuseTransmission(unit(at(m.reflectance)), unit(at(m.transmittance)));
   }
+  Bsdf::Model operator()(const WardMaterial& m) const {
+    return Ward(unit(at(m.diffuse)), unit(at(m.specular)), finite_or(at(m.alpha_x), 1), finite_or(at(m.alpha_y), 1));
+  }
+  Bsdf::Model operator()(const CookTorranceMaterial& m) const {
+    return CookTorrance(unit(at(m.diffuse)), unit(at(m.specular)), finite_or(at(m.roughness), 1), unit(at(m.f0)));
+  }
+  Bsdf::Model operator()(const MeasuredMaterial& m) const {
+    if (!m.data) return Lambert{};
+    return MeasuredBrdf(*m.data);
+  }
   Bsdf::Model operator()(const MixMaterial&) const { return Lambert{}; }
   /// Light passes straight through.
   Bsdf::Model operator()(const InterfaceMaterial&) const { return Dielectric(1, Ggx(), false); }

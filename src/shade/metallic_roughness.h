@@ -24,6 +24,7 @@ class MetallicRoughness {
   Color albedo() const;
   /// A mirror-like metal.
   bool is_delta() const { return ggx_.is_smooth() && is_black(diffuse_); }
+  bool is_isotropic() const { return true; }
   const Color& f0() const { return f0_; }
   /// (1 - metallic) base / (1 - mean E).
   const Color& diffuse() const { return diffuse_; }

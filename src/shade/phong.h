@@ -19,6 +19,7 @@ class Phong {
   DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return diffuse_ + specular_; }
   bool is_delta() const { return false; }
+  bool is_isotropic() const { return true; }
   const Color& diffuse() const { return diffuse_; }
   const Color& specular() const { return specular_; }
 

@@ -9,7 +9,7 @@ namespace {
 
 /// By how much each kind of id moves when one scene's arrays are put behind another's.
 struct IdOffsets {
-  std::size_t images, textures, media, materials, meshes, nodes;
+  std::size_t images, textures, media, materials, meshes, nodes, skins;
 
   void shift(ImageId& id) const { shift_by(id, images); }
   void shift(TextureId& id) const { shift_by(id, textures); }
@@ -17,6 +17,7 @@ struct IdOffsets {
   void shift(MaterialId& id) const { shift_by(id, materials); }
   void shift(MeshId& id) const { shift_by(id, meshes); }
   void shift(NodeId& id) const { shift_by(id, nodes); }
+  void shift(SkinId& id) const { shift_by(id, skins); }
   void shift(ColorParam& param) const { shift(param.texture); }
   void shift(FloatParam& param) const { shift(param.texture); }
 
@@ -35,6 +36,9 @@ struct IdOffsets {
   void shift(DiffuseTransmissionMaterial& m) const { shift_all(m.reflectance, m.transmittance); }
   void shift(MixMaterial& m) const { shift_all(m.first, m.second, m.amount); }
   void shift(InterfaceMaterial&) const {}
+  void shift(WardMaterial& m) const { shift_all(m.diffuse, m.specular, m.alpha_x, m.alpha_y); }
+  void shift(CookTorranceMaterial& m) const { shift_all(m.diffuse, m.specular, m.roughness, m.f0); }
+  void shift(MeasuredMaterial&) const {}
   void shift(Material& m) const {
     std::visit([this](auto& model) { shift(model); }, m.model);
     shift_all(m.emission, m.normal_map, m.bump, m.alpha, m.interior);
@@ -64,13 +68,16 @@ void merge_into(Scene& scene, Scene other) {
                           .media = scene.media.size(),
                           .materials = scene.materials.size(),
                           .meshes = scene.meshes.size(),
-                          .nodes = scene.nodes.size()};
+                          .nodes = scene.nodes.size(),
+                          .skins = scene.skins.size()};
   for (Texture& texture : other.textures) {
     std::visit([&](auto& node) { offsets.shift(node); }, texture.node);
   }
   for (Material& material : other.materials) offsets.shift(material);
   for (Mesh& mesh : other.meshes) {
     for (MaterialId& id : mesh.materials) offsets.shift(id);
+    offsets.shift(mesh.skin);
+    offsets.shift(mesh.weights_node);
   }
   for (Instance& instance : other.instances) {
     offsets.shift(instance.mesh);
@@ -81,6 +88,9 @@ void merge_into(Scene& scene, Scene other) {
   for (Light& light : other.lights) offsets.shift(light.node);
   for (Camera& camera : other.cameras) offsets.shift(camera.node);
   for (Node& node : other.nodes) offsets.shift(node.parent);
+  for (Skin& skin : other.skins) {
+    for (NodeId& joint : skin.joints) offsets.shift(joint);
+  }
 
   // A framing box of one scene must not hide the geometry that the other adds.
   if (scene.framing || other.framing) {
@@ -98,6 +108,7 @@ void merge_into(Scene& scene, Scene other) {
   append(scene.spheres, std::move(other.spheres));
   append(scene.lights, std::move(other.lights));
   append(scene.nodes, std::move(other.nodes));
+  append(scene.skins, std::move(other.skins));
   append(scene.warnings, std::move(other.warnings));
   // All cameras stay, so that --camera can name any; the first is the one that is used.
   append(scene.cameras, std::move(other.cameras));
