@@ -134,6 +134,9 @@ void add_render_method(CLI::App& app, RenderCommand& r) {
       ->check(CLI::IsMember({"embree", "brute"}))
       ->group(group)
       ->capture_default_str();
+  add_optional(app, "--bake-dir", r.bake_directory, "folder of what methods precompute; '' keeps nothing (default: the user's cache)",
+               "DIR")
+      ->group(group);
   app.add_flag("--smooth-terminator", r.smooth_terminator, "shade coarse meshes as the curved surface that their normals suggest")
       ->group(group);
 }
@@ -257,6 +260,14 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   info->add_option("FILE", line.info.files, "scene, picture, slice or checkpoint; builtin: lists the built-in scenes")->required();
   info->add_flag("--json", line.info.json, "as JSON");
 
+  CLI::App* bake = app.add_subcommand("bake", "precompute and store what a method needs");
+  bake->add_option("SCENE", line.render.scenes, "scene files or builtin:NAME; several are merged")->required();
+  add_render_method(*bake, line.render);
+  add_render_lights(*bake, line.render);
+  add_optional(*bake, "--frame", line.render.frame, "animation frame (default 0)", "N");
+  add_optional(*bake, "--memory-limit", line.render.memory_limit_gib, "refuse what would not fit", "GIB")->check(CLI::PositiveNumber);
+  bake->add_flag("--json", line.render.bake_json, "what was found and made, as JSON");
+
   CLI::App* bench = app.add_subcommand("bench", "measure: methods and tracers side by side");
   bench->add_option("SUITE", line.bench.suites, "trace (default), fragments or visibility-cache");
   const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
@@ -300,9 +311,9 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   merge->add_option("--tonemap", line.merge.tonemap, "srgb, reinhard, aces or filmic")->type_name("NAME");
 
   const std::vector<std::pair<CLI::App*, CommandLine::Command>> commands = {
-      {render, CommandLine::Command::render}, {compare, CommandLine::Command::compare}, {methods, CommandLine::Command::methods},
-      {info, CommandLine::Command::info},     {bench, CommandLine::Command::bench},     {gallery, CommandLine::Command::gallery},
-      {merge, CommandLine::Command::merge}};
+      {render, CommandLine::Command::render},   {compare, CommandLine::Command::compare}, {methods, CommandLine::Command::methods},
+      {info, CommandLine::Command::info},       {bake, CommandLine::Command::bake},       {bench, CommandLine::Command::bench},
+      {gallery, CommandLine::Command::gallery}, {merge, CommandLine::Command::merge}};
   for (const auto& [sub, command] : commands) add_common(*sub, line.common);
 
   try {

@@ -34,6 +34,8 @@ struct RenderCommand {
   bool smooth_terminator = false;
   std::uint64_t seed = 0;
   std::optional<double> memory_limit_gib;
+  std::optional<std::string> bake_directory;
+  bool bake_json = false;
   std::string command_line;  ///< as typed, for the EXR header
 };
 
@@ -79,7 +81,7 @@ struct MergeCommand {
 };
 
 struct CommandLine {
-  enum class Command { none, render, compare, methods, info, bench, gallery, merge };
+  enum class Command { none, render, compare, methods, info, bake, bench, gallery, merge };
   Command command = Command::none;
   CommonOptions common;
   RenderCommand render;

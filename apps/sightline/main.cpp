@@ -92,6 +92,8 @@ int run(int argc, char** argv) {
       return run_methods(*line);
     case Command::info:
       return run_info(*line, context);
+    case Command::bake:
+      return run_bake(*line, console, context);
     case Command::bench:
       return run_bench(*line, console, context);
     case Command::gallery:

@@ -94,6 +94,7 @@ struct Sequence {
   bool one_frame;  ///< else an interrupted frame is not written, so that --skip-existing goes on there
   Console& console;
   Context& context;
+  std::shared_ptr<BakeStore> bakes;  ///< of all frames
 };
 
 RenderRequest frame_request(const RenderCommand& command, int frame_number, bool one_frame) {
@@ -116,7 +117,8 @@ StopReason render_frame(const Sequence& sequence, int frame_number, const Stopwa
   if (command.tracer == "brute") options.backend = WorldOptions::Backend::brute;
   options.shadow_terminator = command.smooth_terminator;
   const IVec2 size = choose_size(scene, command.view);
-  const RenderRequest request = frame_request(command, frame_number, sequence.one_frame);
+  RenderRequest request = frame_request(command, frame_number, sequence.one_frame);
+  request.bakes = sequence.bakes;
   options.tracer.reserved_bytes = picture_needs(size, request, false, context).total();
   world = world ? World::edit(*world, std::move(scene), context) : World::build(std::move(scene), options, context);
   const double build_seconds = build_watch.seconds();
@@ -197,7 +199,7 @@ int run_render(const CommandLine& line, Console& console, Context& context) {
   load_options.data_directory = line.common.data_directory;
   Scene scene = load_scenes(command.scenes, load_options, context);
   apply_lights(scene, command.lights, context);
-  const Sequence sequence{command, scene, start.seconds(), frames.first == frames.last, console, context};
+  const Sequence sequence{command, scene, start.seconds(), frames.first == frames.last, console, context, open_bakes(command)};
 
   std::shared_ptr<const World> world;
   bool first = true;

@@ -124,6 +124,21 @@ void check_whole_passes(SampleRange samples, std::uint32_t multiple, std::uint32
       .remedy(fmt::format("with these settings both ends must be multiples of {}", multiple));
 }
 
+std::uint64_t bake(const std::shared_ptr<const World>& world, const RenderRequest& request, const Context& context) {
+  const Method& method = find_method(request.method);
+  if (!method.info().needs_bake)
+    throw usage_error(fmt::format("method '{}' precomputes nothing", method.info().name)).remedy("'sightline methods' says which ones do");
+  const VisibilityInfo& visibility = find_visibility(request.visibility.value_or(method.default_visibility()));
+  check_supported(method, world->scene());
+  RenderJob job;
+  job.world = world;
+  job.settings = resolve_settings(method, visibility, request.settings).method;
+  job.bakes = request.bakes.get();
+  method.check(world->scene(), job);
+  const std::unique_ptr<const Bake> bake = method.prepare(job, context);
+  return bake ? bake->bytes() : 0;
+}
+
 RenderResult render(const std::shared_ptr<const World>& world, const Camera& camera, IVec2 size_px, PixelFilter filter,
                     const RenderRequest& request, const Context& context, const Stopwatch& since_start,
                     const std::vector<FrameSink*>& sinks) {
@@ -171,6 +186,7 @@ RenderResult render(const std::shared_ptr<const World>& world, const Camera& cam
                       job.light_samples,
                       job.max_bounces,
                       std::nullopt,
+                      0,
                       {},
                       {}};
   result.settings = settings.method.to_text();
@@ -179,8 +195,10 @@ RenderResult render(const std::shared_ptr<const World>& world, const Camera& cam
   if (request.resume) result.frame = resume_frame(*request.resume, result.identity, samples, aovs);
 
   const Stopwatch prepare_watch;
+  job.bakes = request.bakes.get();
   const std::unique_ptr<const Bake> bake = method.prepare(job, context);
   job.bake = bake.get();
+  result.bake_bytes = bake ? bake->bytes() : 0;
   result.seconds.prepare = prepare_watch.seconds();
 
   const ScheduleLimits limits{samples, request.target_error, request.time_limit_s, multiple};

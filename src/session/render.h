@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/bake_store.h"
 #include "film/frame.h"
 #include "film/frame_file.h"
 #include "methods/method.h"
@@ -26,6 +27,8 @@ struct RenderRequest {
   std::optional<SampleRange> sample_range;  ///< part of the total spp
   AovSet aovs;
   std::optional<std::filesystem::path> checkpoint, resume;
+  /// Where methods keep what they precompute, over frames and runs; null: nowhere.
+  std::shared_ptr<BakeStore> bakes;
 };
 
 /// Wall seconds by phase.
@@ -41,6 +44,7 @@ struct RenderResult {
   std::vector<std::pair<std::string, std::string>> settings;  ///< all, with defaults, of method then visibility
   int spp = 0, light_samples = 0, max_bounces = 0;
   std::optional<double> error;
+  std::uint64_t bake_bytes = 0;  ///< of what the method precomputed
   Timings seconds;
   FrameIdentity identity;  ///< what slices and checkpoints of this picture carry
 };
@@ -60,6 +64,9 @@ class FrameSink {
 RenderResult render(const std::shared_ptr<const World>& world, const Camera& camera, IVec2 size_px, PixelFilter filter,
                     const RenderRequest& request, const Context& context, const Stopwatch& since_start,
                     const std::vector<FrameSink*>& sinks = {});
+
+/// What a method precomputes for this scene, made and kept in request.bakes without a picture. Returns its bytes.
+std::uint64_t bake(const std::shared_ptr<const World>& world, const RenderRequest& request, const Context& context);
 
 /// The settings of a request resolved: throws Error{usage} for unknown keys (nearest of both schemas) and bad values.
 struct ResolvedSettings {

@@ -63,7 +63,7 @@ Json statistics_json(const RenderResult& result, const World& world, const Conte
   json["visibility"] = visibility_json(result.statistics.visibility);
   json["memory"] = {{"peak_rss_bytes", peak_resident_bytes()},    {"scene_bytes", scene_bytes(world.scene())},
                     {"accel_bytes", world.acceleration_bytes()},  {"accel_peak_bytes", world.tracer().memory().peak_build_bytes},
-                    {"frame_bytes", result.frame.memory_bytes()}, {"bake_bytes", 0}};
+                    {"frame_bytes", result.frame.memory_bytes()}, {"bake_bytes", result.bake_bytes}};
   json["image"] = {{"mean_luminance", result.frame.mean_luminance()},
                    {"nonfinite_samples", result.frame.nonfinite_samples()},
                    {"nonfinite_pixels", 0},

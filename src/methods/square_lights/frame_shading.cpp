@@ -1,0 +1,266 @@
+#include "methods/square_lights/frame_shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/square_lights/haar.h"
+#include "methods/square_lights/summed_visibility.h"
+
+namespace sightline::square_lights {
+namespace {
+
+Coverage coverage_of(SquareLightsSettings::Coverage c) {
+  switch (c) {
+    case SquareLightsSettings::Coverage::average:
+      return Coverage::average;
+    case SquareLightsSettings::Coverage::gradient:
+      return Coverage::gradient;
+    default:
+      return Coverage::parallel;
+  }
+}
+
+/// Every texel as a square of its own.
+std::vector<SquareLight> texel_lights(const LightCube& cube) {
+  std::vector<SquareLight> lights(cube.count());
+  for (std::size_t i = 0; i < lights.size(); ++i) lights[i] = {cube.center(i), std::sqrt(0.5f * cube.solid_angle(i)), cube.texels[i]};
+  return lights;
+}
+
+/// Whether an occluder's sphere may come between a receiver's sphere and a light (digest 3.7): the light's directions make a cone of half
+/// angle `a` about c, and the occluder has to reach into the volume that it sweeps from the receiver.
+bool may_hide(const Vec3& receiver_center, float receiver_radius, const Vec3& occluder_center, float occluder_radius,
+              const SquareLight& light) {
+  const float a = 2 * std::asin(std::min(1.f, 0.5f * light.radius));
+  if (a >= 80 * kPi / 180) return true;
+  const Vec3 between = occluder_center - receiver_center;
+  const float t = glm::dot(between, light.center), axis = std::sqrt(std::max(0.f, length_squared(between) - t * t));
+  return axis * std::cos(a) - t * std::sin(a) <= occluder_radius + receiver_radius;
+}
+
+float scale_of(const Mat4& m) { return glm::length(Vec3(m[0])); }
+
+// Light that grazes a vertex of a silhouette: its BRDF is looked up as nearly from the side.
+constexpr float kLeastCosine = 1e-3f;
+
+Vec3 above_surface(Vec3 wo) {
+  if (wo.z < kLeastCosine) wo = normalize_or({wo.x, wo.y, 0}, {1, 0, 0}), wo.z = kLeastCosine;
+  return wo;
+}
+
+}  // namespace
+
+FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& settings, const View& view)
+    : bake_(bake), settings_(settings), coverage_(coverage_of(settings.coverage)) {
+  const Camera& camera = view.camera();
+  orthographic_ = camera.projection == Camera::Projection::orthographic;
+  const Vec3 eye = orthographic_ ? glm::normalize(Vec3(camera.world_from_camera[2])) : Vec3(camera.world_from_camera[3]);
+  if (settings.paper_radius) plane_scale_ = 1;
+
+  const LightChoice choice = parse_lights(settings.lights);
+  const bool traced = choice.kind == LightChoice::Kind::all || settings.basis == SquareLightsSettings::Basis::haar;
+  if (traced) {
+    directions_ = texel_directions(bake.cube().size, bake.world_from_environment());
+    if (settings.basis == SquareLightsSettings::Basis::haar) {
+      const WaveletLight light =
+          wavelet_light(bake.cube(), choice.kind == LightChoice::Kind::count ? choice.count : 0, settings.area_weighted);
+      for (std::size_t c = 0; c < 3; ++c)
+        for (const WaveletLight::Term& term : light.channel[c]) terms_[c].emplace_back(term.index, term.value);
+    }
+    for (std::size_t i = 0; i < bake.cube().count(); ++i) texel_solid_angle_.push_back(bake.cube().solid_angle(i));
+  } else if (!bake.cube().texels.empty()) {
+    LightSet own;
+    const std::vector<SquareLight> lights =
+        choice.kind == LightChoice::Kind::all_tables ? texel_lights(bake.cube()) : bake.tree().lights(choice.count);
+    own.reserve(lights.size());
+    for (const SquareLight& light : lights) {
+      if (!is_black(light.radiance)) own.add(light);
+    }
+    own.finish();
+    world_lights_.turned_from(own, bake.world_from_environment());
+  }
+
+  const std::vector<ShadingObject>& objects = bake.scene().objects();
+  receivers_.resize(objects.size());
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    Receiver& receiver = receivers_[o];
+    const ShadingObject& object = objects[o];
+    object_of_vertex_.push_back(object.first);
+    receiver.world_from_object = object.world_from_object;
+    receiver.object_from_world = glm::inverse(object.world_from_object);
+    receiver.lights.turned_from(world_lights_, Mat3(receiver.object_from_world));
+    receiver.eye = orthographic_ ? glm::normalize(transform_vector(receiver.object_from_world, eye))
+                                 : transform_point(receiver.object_from_world, eye);
+    if (object.deformable) continue;
+    receiver.planes = object.moving && !bake.planes().empty();
+    const Vec3 center = transform_point(object.world_from_object, object.center);
+    const float radius = object.radius * scale_of(object.world_from_object);
+    for (const Occluder& occluder : bake.occluders()) {
+      // Nothing hides light from itself this way, and what stands still knows itself from its own tables.
+      if (occluder.object == o) continue;
+      Use use;
+      use.occluder = &occluder;
+      const Vec3 occluder_center = transform_point(occluder.world_from_field, occluder.field.center());
+      const float occluder_radius = occluder.field.radius() * scale_of(occluder.world_from_field);
+      LightSet near;
+      for (std::size_t i = 0; i < world_lights_.count; ++i) {
+        const SquareLight light = world_lights_.light(i);
+        if (!may_hide(center, radius, occluder_center, occluder_radius, light)) continue;
+        near.add(light);
+        use.index.push_back(static_cast<std::uint32_t>(i));
+      }
+      if (use.index.empty()) continue;
+      near.finish();
+      const Mat4 field_from_world = glm::inverse(occluder.world_from_field);
+      use.lights.turned_from(near, Mat3(field_from_world));
+      use.field_from_receiver = field_from_world * object.world_from_object;
+      receiver.occluders.push_back(std::move(use));
+    }
+  }
+}
+
+Vec3 FrameShading::towards_eye(const Receiver& receiver, const Vec3& position) const {
+  return orthographic_ ? receiver.eye : normalize_or(receiver.eye - position, Vec3(0, 0, 1));
+}
+
+void FrameShading::tables_of(std::uint32_t object, const VertexHit& hit, int count, ReceiverTables& tables, Scratch& scratch) const {
+  const VertexTables& stored = bake_.tables(object);
+  if (stored.empty()) return;
+  const ShadingVertices& vertices = bake_.scene().vertices();
+  const std::uint32_t first = bake_.scene().objects()[object].first;
+  tables.count = count;
+  for (int j = 0; j < count; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    const std::uint32_t v = hit.vertex[k];
+    tables.weight[j] = hit.weight[k];
+    tables.frame[j] = vertex_frame(vertices.normal[v], vertices.tangent[v]);
+    if (!stored.compressed) {
+      tables.table[j] = stored.raw.data() + (v - first) * kTableCells;
+      continue;
+    }
+    AlignedVector<std::int8_t>& expanded = scratch.expanded[j];
+    if (expanded.empty()) expanded.resize(kTableCells + 64);
+    if (scratch.expanded_vertex[j] != v)
+      stored.compressed->expand(v - first, std::span<std::int8_t, kTableCells>(expanded.data(), kTableCells));
+    scratch.expanded_vertex[j] = v;
+    tables.table[j] = expanded.data();
+  }
+}
+
+void FrameShading::hide(const Receiver& receiver, const Vec3& position, Scratch& scratch) const {
+  const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
+  for (const Use& use : receiver.occluders) {
+    const OccluderSamples samples = use.occluder->field.samples(transform_point(use.field_from_receiver, position));
+    occluder_distances(use.occluder->field, samples, use.lights.lanes(), scratch.other);
+    scratch.counts.occluder_tests += use.lights.count;
+    for (std::size_t k = 0; k < use.index.size(); ++k) {
+      const std::uint32_t i = use.index[k];
+      if (combine)
+        scratch.distance[i] = std::min(scratch.distance[i], scratch.other[k]);
+      else if (const float d = scratch.other[k], r_p = use.lights.r[k] * plane_scale_; d < 0.70710678f * r_p)
+        scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+    }
+  }
+  if (!receiver.planes) return;
+  const Vec3 world = transform_point(receiver.world_from_object, position);
+  for (const PlanarOccluder& plane : bake_.planes()) {
+    for (std::size_t i = 0; i < world_lights_.count; ++i) {
+      if (!(scratch.visible[i] > 0)) continue;
+      const float d = plane.distance(world, {world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]});
+      const float r_p = world_lights_.r[i] * plane_scale_;
+      if (combine)
+        scratch.distance[i] = std::min(scratch.distance[i], d);
+      else
+        scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+    }
+  }
+}
+
+Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
+                        const BrdfTable& brdf, Scratch& scratch) const {
+  const LightSet& lights = receiver.lights;
+  const std::size_t n = lights.x.size();
+  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
+    if (values->size() < n) values->resize(n);
+  }
+  const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
+  const bool gradients = coverage_ == Coverage::gradient && !combine;
+  if (gradients && scratch.gradient_x.size() < n) scratch.gradient_x.resize(n), scratch.gradient_y.resize(n);
+  const std::span<float> gx = gradients ? std::span<float>(scratch.gradient_x) : std::span<float>(),
+                         gy = gradients ? std::span<float>(scratch.gradient_y) : std::span<float>();
+  std::fill_n(scratch.visible.begin(), n, 1.f);
+  if (settings_.tables == SquareLightsSettings::Tables::summed && tables.count > 0) {
+    summed_visibility(tables, lights, plane_scale_, scratch.visible);
+    std::fill_n(scratch.distance.begin(), n, kNoOccluder);
+  } else {
+    self_distances(tables, lights, std::span(scratch.distance).first(n), gx, gy);
+  }
+  if (combine) {
+    hide(receiver, position, scratch);
+    multiply_coverage(scratch.distance, {}, {}, lights, plane_scale_, coverage_, scratch.visible);
+  } else {
+    if (tables.count > 0 && settings_.tables == SquareLightsSettings::Tables::distance)
+      multiply_coverage(scratch.distance, gx, gy, lights, plane_scale_, coverage_, scratch.visible);
+    hide(receiver, position, scratch);
+  }
+  std::size_t lit = 0;
+  const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), lights, scratch.visible, plane_scale_, lit);
+  ++scratch.counts.receivers;
+  scratch.counts.lights += lit;
+  return radiance;
+}
+
+Color FrameShading::by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const {
+  const Receiver& receiver = receivers_[object];
+  const ShadingVertices& vertices = bake_.scene().vertices();
+  const std::size_t texels = directions_.texels;
+  const Vec3 wo = normalize_or(transform_vector(receiver.world_from_object, towards_eye(receiver, vertices.position[i])), Vec3(0, 0, 1));
+  const Mat3 normal_matrix = glm::transpose(Mat3(receiver.object_from_world));
+  const Frame3 frame = frame_from_normal_tangent(normalize_or(normal_matrix * vertices.normal[i], Vec3(0, 0, 1)),
+                                                 transform_vector(receiver.world_from_object, vertices.tangent[i]));
+  scratch.transport.resize(texels);
+  Vec3 wo_up = frame.to_world(above_surface(frame.to_local(wo)));
+  texel_transport(bake_.texel_masks().subspan(i * texels, texels), directions_, bake_.bsdf(vertices.material[i]), frame, wo_up,
+                  scratch.transport);
+  ++scratch.counts.receivers;
+  Color sum(0);
+  if (settings_.basis == SquareLightsSettings::Basis::squares) {
+    for (std::size_t k = 0; k < texels; ++k) sum += texel_solid_angle_[k] * bake_.cube().texels[k] * scratch.transport[k];
+    return sum;
+  }
+  scratch.wavelets.resize(texels);
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t k = 0; k < texels; ++k) scratch.wavelets[k] = scratch.transport[k][c];
+    wavelet_transport(scratch.wavelets, bake_.cube().size);
+    for (const auto& [index, value] : terms_[static_cast<std::size_t>(c)]) sum[c] += value * scratch.wavelets[index];
+  }
+  return sum;
+}
+
+Color FrameShading::shade_vertex(std::uint32_t i, Scratch& scratch) const {
+  const auto object =
+      static_cast<std::uint32_t>(std::upper_bound(object_of_vertex_.begin(), object_of_vertex_.end(), i) - object_of_vertex_.begin()) - 1;
+  if (directions_.texels > 0) return by_texels(i, object, scratch);
+  const ShadingVertices& vertices = bake_.scene().vertices();
+  const Receiver& receiver = receivers_[object];
+  const BrdfTable* brdf = bake_.brdf(vertices.material[i]);
+  if (brdf == nullptr || world_lights_.count == 0) return Color(0);
+  ReceiverTables tables;
+  tables_of(object, {{i, i, i}, {1, 0, 0}}, 1, tables, scratch);
+  const Frame3 frame = tables.count > 0 ? tables.frame[0] : vertex_frame(vertices.normal[i], vertices.tangent[i]);
+  return lit(receiver, tables, vertices.position[i], frame, towards_eye(receiver, vertices.position[i]), *brdf, scratch);
+}
+
+Color FrameShading::shade_point(const VertexHit& hit, std::uint32_t object, std::uint32_t material, const Vec3& position,
+                                const Frame3& frame, const Vec3& wo, Scratch& scratch) const {
+  const Receiver& receiver = receivers_[object];
+  const BrdfTable* brdf = bake_.brdf(material);
+  if (brdf == nullptr || world_lights_.count == 0) return Color(0);
+  ReceiverTables tables;
+  tables_of(object, hit, 3, tables, scratch);
+  const auto turn = [&](const Vec3& v) { return normalize_or(transform_vector(receiver.object_from_world, v), v); };
+  const Frame3 local = frame_from_normal_tangent(turn(frame.normal), turn(frame.tangent));
+  return lit(receiver, tables, transform_point(receiver.object_from_world, position), local, turn(wo), *brdf, scratch);
+}
+
+}  // namespace sightline::square_lights

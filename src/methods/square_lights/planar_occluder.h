@@ -1,0 +1,28 @@
+// Flat convex things, floors and walls, as exact occluders of what moves above them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "scene/scene.h"
+
+namespace sightline::square_lights {
+
+/// A convex polygon in world space.
+class PlanarOccluder {
+ public:
+  /// The hull of points that lie in one plane and whose `area` fills it; nothing for anything else.
+  static std::optional<PlanarOccluder> fit(std::span<const Vec3> points, float area);
+
+  /// Distance, in plane units at the pole of the disk (angle over root 2), of unit direction `c` from the polygon's outline as seen from
+  /// `position`: positive outside, negative where the polygon hides c. kNoOccluder where it is seen edge on.
+  float distance(const Vec3& position, const Vec3& c) const;
+
+ private:
+  std::vector<Vec3> corners_;  ///< counter-clockwise about normal_
+  Vec3 normal_{0, 1, 0};
+};
+
+}  // namespace sightline::square_lights
