@@ -19,15 +19,17 @@ class BrdfTable {
   static constexpr std::size_t kSliceFloats = std::size_t{kCorners} * kCorners * 4;
 
   /// Tables of `bsdf`: by view angle alone (32 of them over [0, pi/2]) where it looks the same turned about the normal, else for 32 x 32
-  /// views of the disk. Cells are means of `samples` x `samples` points, zero outside the disk. Delta lobes are left out; light from below
-  /// the surface too. Throws Error{interrupted} when cancelled.
+  /// views of the disk. Cells are means, zero outside the disk: of 2 x 2 points where the function is smooth, of about `samples` x
+  /// `samples` where it bends, of up to 8 times as many along an edge around peaks, which directions chosen by the BSDF itself find. Delta
+  /// lobes are left out; light from below the surface too. Throws Error{interrupted} when cancelled.
   static BrdfTable build(const Bsdf& bsdf, int samples, const Context& context);
 
   bool isotropic() const { return isotropic_; }
   std::size_t bytes() const { return corners_.size() * sizeof(float); }
 
   /// Up to four tables and their weights for a view direction (local, unit, z > 0): two by angle, or four of the disk. `turn` is what p has
-  /// to be turned by before it is looked up: (cos, sin) of minus the view's azimuth, (1, 0) for anisotropic tables.
+  /// to be turned by before it is looked up: (cos, sin) of minus the view's azimuth on the disk (its p comes to lie on +x), (1, 0) for
+  /// anisotropic tables.
   struct Slices {
     const float* table[4] = {};
     float weight[4] = {};
@@ -41,7 +43,7 @@ class BrdfTable {
 
  private:
   bool isotropic_ = true;
-  AlignedVector<float> corners_;  ///< [view][row][column][4]
+  AlignedVector<float> corners_;  ///< [view][row][column][4]; rows follow p.y, columns p.x
 };
 
 /// Whether a BSDF looks the same however it is turned about the normal.

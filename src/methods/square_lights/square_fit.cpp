@@ -16,9 +16,9 @@ constexpr std::array<Vec2, 4> kTurn{Vec2(1, 0), Vec2(0.92387953f, 0.38268343f), 
 constexpr float kRootHalf = 0.70710678f;
 /// Steps of the half edge that are tried, by mean width of a point; the best of them is refined by a parabola.
 constexpr float kStepsPerPoint = 2;
-/// Pattern searches end after so many rounds, or when steps are so small against a point.
+/// Pattern searches end after so many rounds, or when steps are small against a point or against the half edge.
 constexpr int kMostTries = 12;
-constexpr float kLeastStep = 0.1f;
+constexpr float kLeastStep = 0.1f, kLeastRelativeStep = 0.06f;
 /// Largest square tried, by the square of the region's own solid angle.
 constexpr float kLargest = 1.6f;
 
@@ -165,7 +165,7 @@ SquareFit SquareFitter::fit(std::span<const Vec3> starts, bool area_penalty) {
     // Pattern search: along both tangents, with half the step where nothing is gained, until steps are small against a point.
     const float width = std::sqrt(static_cast<float>(solid_angle_) / static_cast<float>(points_.size()));
     float step = 0.5f * best.half;
-    for (int tries = 0; tries < kMostTries && step > kLeastStep * width; ++tries) {
+    for (int tries = 0; tries < kMostTries && step > std::max(kLeastStep * width, kLeastRelativeStep * best.half); ++tries) {
       const Frame3 frame = frame_from_normal(center);
       const std::array<Vec3, 4> offsets{frame.tangent, -frame.tangent, frame.bitangent, -frame.bitangent};
       const double before = best.value;
