@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "base/core/aligned.h"
 #include "base/core/context.h"
@@ -25,25 +27,36 @@ inline constexpr std::size_t kShellPoints = std::size_t{6} * kShellSize * kShell
 inline constexpr std::size_t kFieldTables = kShells * kShellPoints;
 /// Radius of shell k in bounding radii: logarithmic, so that the occluder's angle changes alike from each to the next.
 float shell_radius(int k);
+/// Unit direction from the centre to the point of a shell that table `i` belongs to.
+Vec3 shell_direction(std::size_t i);
+/// Radius on the disk of a bounding sphere seen from `rho` radii away: sqrt(1 - cos asin(1 / rho)); 1 within 1 radius.
+float apparent_radius(float rho);
+/// Scale of each shell's tables: what half the edge of their square stands for on the disk; 1 = the whole disk.
+std::array<float, kShells> shell_zoom(const OccluderFieldOptions& options);
 
-/// Eight tables around a point and their weights, for any number of lights.
+/// Distance where a light cannot reach the occluder.
+inline constexpr float kBeyondOccluder = 1e3f;
+
+/// The tables around a point, for any number of lights. Each has a frame of its own, turned from that of the point by the least rotation
+/// between their axes, which on the disk is a turn about its centre: p in cells of table i is turn * p, counted from the middle.
 struct OccluderSamples {
   std::array<std::size_t, 8> table{};  ///< index into the field's tables
-  std::array<float, 8> weight{};       ///< sums to 1
-  std::array<Vec3, 8> axis{};          ///< z of each table's frame: from the sample point to the centre
-  std::array<float, 8> zoom{};         ///< p is divided by it before the look-up, D multiplied after
-  Vec3 axis_here{0, 0, 1};             ///< from the point itself to the centre
-  float far_scale = 1;                 ///< beyond the last shell: how much smaller the occluder looks than from there
-  float half_angle = 0;                ///< of the occluder's bounding cone
+  std::array<Vec2, 8> turn{};          ///< cosine and sine, times cells per plane unit
+  std::array<float, 8> code_unit{};    ///< plane units per code of a distance, times the table's weight
+  std::array<float, 8> cell_unit{};    ///< plane units per cell, times the table's weight
+  Frame3 frame;                        ///< at the point itself; z is towards the centre
+  float sin_half = 0, cos_half = 1;    ///< of half the angle of the bounding cone; sin_half = 2 where it is all around
+  float hidden_area = 0;               ///< at most this much of the disk is hidden
   bool inside = false;                 ///< nearer than the first shell
 };
 
-/// A field over bytes that it does not own, in the occluder's own space.
+/// A field over bytes that it does not own, in the occluder's own space. kTableSlack bytes after the tables must be readable.
 class OccluderField {
  public:
   OccluderField() = default;
-  OccluderField(const Vec3& center, float radius, const std::array<float, kShells>& zoom, std::span<const std::int8_t> tables)
-      : center_(center), radius_(radius), zoom_(zoom), tables_(tables) {}
+  OccluderField(const Vec3& center, float radius, const std::array<float, kShells>& zoom, std::span<const std::int8_t> tables);
+  /// Finds how much of its disk each table hides, by which D is bounded; without it the bounding sphere's outline serves.
+  void measure(const Context& context);
 
   const Vec3& center() const { return center_; }
   float radius() const { return radius_; }
@@ -52,8 +65,9 @@ class OccluderField {
   TableView table(std::size_t i) const { return TableView(tables_.data() + i * kTableCells, kTableCells); }
 
   OccluderSamples samples(const Vec3& position) const;
-  /// D of the occluder's outline around unit direction c, in plane units of the map whose axis points at the occluder; +1e3 where the light
-  /// cannot reach its bounding cone. The scalar definition.
+  /// D of the occluder's outline around unit direction c, in plane units of the map whose axis points at the occluder; kBeyondOccluder
+  /// where the light cannot reach its bounding cone. Never so low that Eq. 9 would hide more of the square than the occluder's whole area.
+  /// The scalar definition.
   float distance(const OccluderSamples& samples, const Vec3& c, float r) const;
   /// Visible fraction of the square light (c, r) from `position`.
   float visibility(const Vec3& position, const Vec3& c, float r, Coverage coverage = Coverage::parallel) const;
@@ -63,6 +77,7 @@ class OccluderField {
   float radius_ = 1;
   std::array<float, kShells> zoom_{};
   std::span<const std::int8_t> tables_;
+  std::shared_ptr<const std::vector<float>> hidden_;  ///< by table: hidden part of its square
 };
 
 /// Lights as structure of arrays, padded to kLanes with radius 0.
@@ -72,8 +87,10 @@ struct LightLanes {
 /// distance() for all lights on the machine's best vectors.
 void occluder_distances(const OccluderField& field, const OccluderSamples& samples, const LightLanes& lights, std::span<float> distances);
 
-/// Scale of each shell's tables: what their square covers, 1 = the whole disk.
-std::array<float, kShells> shell_zoom(const OccluderFieldOptions& options);
+/// As many tables as `tables` has room for, from number `first` on.
+void bake_occluder_tables(const Tracer& tracer, const Vec3& center, float radius, const OccluderFieldOptions& options, std::size_t first,
+                          std::span<std::int8_t> tables, RayCounts& rays, const Context& context);
+/// Bytes that the result of a bake takes.
 std::uint64_t occluder_field_bytes();
 /// All tables of the occluder in `tracer`, whose bounding sphere is (center, radius). Rays that miss the sphere are not traced. Reports
 /// progress, stops when cancelled; the same for any number of threads.

@@ -1,0 +1,61 @@
+// Traces the tables of an occluder field.
+#include <mutex>
+
+#include "base/parallel/parallel.h"
+#include "methods/square_lights/disk_rays.h"
+#include "methods/square_lights/occluder_field.h"
+
+namespace sightline::square_lights {
+namespace {
+
+// Tables that a worker makes at a time: some ten milliseconds.
+constexpr std::size_t kTables = 32;
+
+/// Directions of a shell's tables that may hit the bounding sphere: all of the square within it. Deviation: the paper's maps end at the
+/// hemisphere; the corners of the square are directions behind it, and there is no reason to call them open within the object.
+DiskRays shell_rays(const DiskGrid& grid, int shell, float zoom) {
+  const float rho = shell_radius(shell), radius = apparent_radius(rho);
+  return make_disk_rays(grid, zoom, [&](const Vec2& p) { return rho <= 1 || p.x * p.x + p.y * p.y <= radius * radius; });
+}
+
+}  // namespace
+
+std::uint64_t occluder_field_bytes() { return kFieldTables * kTableCells + kTableSlack; }
+
+void bake_occluder_tables(const Tracer& tracer, const Vec3& center, float radius, const OccluderFieldOptions& options, std::size_t first,
+                          std::span<std::int8_t> tables, RayCounts& rays, const Context& context) {
+  const DiskGrid grid(options.resolution);
+  const std::array<float, kShells> zoom = shell_zoom(options);
+  std::vector<DiskRays> shells;
+  for (int k = 0; k < kShells; ++k) shells.push_back(shell_rays(grid, k, zoom[k]));
+
+  const std::size_t count = tables.size() / kTableCells;
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(context, count, kTables, [&](std::size_t begin, std::size_t end) {
+    MapTracer map_tracer(tracer, grid.count());
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto shell = static_cast<int>((first + i) / kShellPoints);
+      const Vec3 out = shell_direction(first + i);
+      const Vec3 origin = center + shell_radius(shell) * radius * out;
+      const std::span<std::uint8_t> visible =
+          map_tracer.trace(shells[static_cast<std::size_t>(shell)], frame_from_normal(-out), origin, nullptr, 1);
+      make_distance_table(visible, options.resolution, tables.subspan(i * kTableCells).first<kTableCells>());
+    }
+    const std::scoped_lock lock(mutex);
+    rays += map_tracer.counts();
+    done += end - begin;
+    context.report("occluder field", static_cast<double>(done), static_cast<double>(count));
+  });
+}
+
+AlignedVector<std::int8_t> bake_occluder_field(const Tracer& tracer, const Vec3& center, float radius, const OccluderFieldOptions& options,
+                                               RayCounts& rays, const Context& context) {
+  AlignedVector<std::int8_t> tables;
+  tables.reserve(occluder_field_bytes());
+  tables.resize(kFieldTables * kTableCells);
+  bake_occluder_tables(tracer, center, radius, options, 0, tables, rays, context);
+  return tables;
+}
+
+}  // namespace sightline::square_lights

@@ -1,0 +1,188 @@
+#include "methods/square_lights/occluder_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel/parallel.h"
+#include "methods/square_lights/hemisphere_disk.h"
+#include "shade/cube_map.h"
+
+namespace sightline::square_lights {
+namespace {
+
+// From here on the apparent size is what mainly changes with distance, and tables are stretched to that of the point.
+constexpr float kStretched = 1.2f;
+
+/// A texel of the cube of directions.
+struct Texel {
+  int face, x, y;
+  std::size_t index() const { return static_cast<std::size_t>((face * kShellSize + y) * kShellSize + x); }
+  Vec3 direction() const { return glm::normalize(cube_direction(face, cube_coordinate(x, kShellSize), cube_coordinate(y, kShellSize))); }
+};
+
+/// Texel (x, y) of a face; one beyond its edge is that of the neighbouring face which continues it.
+Texel texel_at(int face, int x, int y) {
+  if (x >= 0 && y >= 0 && x < kShellSize && y < kShellSize) return {face, x, y};
+  const CubePlace place = cube_place(cube_direction(face, cube_coordinate(x, kShellSize), cube_coordinate(y, kShellSize)));
+  const auto cell = [](float u) { return std::clamp(static_cast<int>((u + 1) * (kShellSize / 2.f)), 0, kShellSize - 1); };
+  return {place.face, cell(place.u), cell(place.v)};
+}
+
+struct Corner {
+  Texel texel;
+  float weight;
+};
+/// Four texels around a direction. Around a corner of the cube there are three: the share of the fourth is theirs.
+std::array<Corner, 4> corners_at(const Vec3& direction) {
+  const CubePlace place = cube_place(direction);
+  const float u = (place.u + 1) * (kShellSize / 2.f) - 0.5f, v = (place.v + 1) * (kShellSize / 2.f) - 0.5f;
+  const int x = std::clamp(static_cast<int>(std::floor(u)), -1, kShellSize - 1);
+  const int y = std::clamp(static_cast<int>(std::floor(v)), -1, kShellSize - 1);
+  const float fx = std::clamp(u - static_cast<float>(x), 0.f, 1.f), fy = std::clamp(v - static_cast<float>(y), 0.f, 1.f);
+  std::array<Corner, 4> corners;
+  const auto is_beyond = [](int i) { return i < 0 || i >= kShellSize; };
+  int missing = -1;
+  for (int k = 0; k < 4; ++k) {
+    const int cx = x + (k & 1), cy = y + (k >> 1);
+    corners[k] = {texel_at(place.face, cx, cy), (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy)};
+    if (is_beyond(cx) && is_beyond(cy)) missing = k;
+  }
+  if (missing >= 0) {
+    const float share = corners[missing].weight / 3;
+    for (int k = 0; k < 4; ++k) corners[k].weight = k == missing ? 0 : corners[k].weight + share;
+  }
+  return corners;
+}
+
+/// Cosine and sine by which a frame about `to` sees directions turned that the least rotation from frame.normal to `to` takes along.
+Vec2 least_turn(const Frame3& frame, const Vec3& to) {
+  const Vec3 axis = glm::cross(frame.normal, to), moved = glm::cross(axis, frame.tangent);
+  const Vec3 tangent = frame.tangent + moved + glm::cross(axis, moved) / (1 + glm::dot(frame.normal, to));
+  const Frame3 there = frame_from_normal(to);
+  return {glm::dot(tangent, there.tangent), glm::dot(tangent, there.bitangent)};
+}
+
+}  // namespace
+
+float shell_radius(int k) { return kInnerShell * std::pow(kOuterShell / kInnerShell, static_cast<float>(k) / (kShells - 1)); }
+
+Vec3 shell_direction(std::size_t i) {
+  const std::size_t texel = i % kShellPoints;
+  const auto part = [](std::size_t value) { return static_cast<int>(value % kShellSize); };
+  return Texel{static_cast<int>(texel / (kShellSize * kShellSize)), part(texel), part(texel / kShellSize)}.direction();
+}
+
+float apparent_radius(float rho) {
+  if (rho <= 1) return 1;
+  // 1 - cos, in a form that keeps its digits far away.
+  const float sin2 = 1 / (rho * rho);
+  return std::sqrt(sin2 / (1 + std::sqrt(1 - sin2)));
+}
+
+std::array<float, kShells> shell_zoom(const OccluderFieldOptions& options) {
+  std::array<float, kShells> zoom;
+  for (int k = 0; k < kShells; ++k) {
+    const float rho = shell_radius(k);
+    zoom[k] = options.zoom && rho >= kStretched ? 1.3f * apparent_radius(rho) : 1;
+  }
+  return zoom;
+}
+
+OccluderField::OccluderField(const Vec3& center, float radius, const std::array<float, kShells>& zoom, std::span<const std::int8_t> tables)
+    : center_(center), radius_(radius), zoom_(zoom), tables_(tables) {}
+
+void OccluderField::measure(const Context& context) {
+  auto hidden = std::make_shared<std::vector<float>>(tables_.size() / kTableCells);
+  parallel_for(context, hidden->size(), 512, [&](std::size_t begin, std::size_t end) {
+    // A cell through which the boundary runs is hidden in part: it reaches from half a cell this side of its centre to half a cell beyond.
+    constexpr float codes_per_cell = 2.f / kTableSize / kDistanceStep;
+    constexpr auto most = static_cast<int>(codes_per_cell * 32 + 0.5f);
+    for (std::size_t i = begin; i < end; ++i) {
+      int sum = 0;
+      for (const std::int8_t code : table(i)) sum += std::clamp(most / 2 - 32 * code, 0, most);
+      (*hidden)[i] = static_cast<float>(sum) / (static_cast<float>(most) * kTableCells);
+    }
+  });
+  hidden_ = std::move(hidden);
+}
+
+OccluderSamples OccluderField::samples(const Vec3& position) const {
+  OccluderSamples result;
+  const Vec3 away = position - center_;
+  const float rho = glm::length(away) / radius_;
+  const Vec3 out = normalize_or(away, Vec3(0, 0, 1));
+  result.frame = frame_from_normal(-out);
+  result.inside = rho < kInnerShell;
+
+  // Between which shells. Deviation: outside the object tables are stretched to the size that the occluder has from here, on both sides of
+  // a point and beyond the last shell alike; blending outlines of different sizes would blur them.
+  const float here = apparent_radius(rho);
+  constexpr float shells_per_log = (kShells - 1) / 2.7080502f;  // ln(kOuterShell / kInnerShell)
+  const float level = std::clamp(std::log(std::max(rho, 1e-6f) / kInnerShell) * shells_per_log, 0.f, static_cast<float>(kShells - 1));
+  const int first = std::min(static_cast<int>(level), kShells - 2);
+  const float between = level - static_cast<float>(first);
+  std::array<float, 2> scale, unit, share{1 - between, between};
+  for (int s = 0; s < 2; ++s) {
+    const float shell = shell_radius(first + s);
+    const float stretch = rho >= kStretched && shell >= kStretched ? here / apparent_radius(shell) : 1;
+    scale[s] = zoom_[first + s] * stretch;
+    unit[s] = scale[s] * share[s];
+  }
+
+  const std::array<Corner, 4> corners = corners_at(out);
+  float hidden = 0;
+  for (int k = 0; k < 4; ++k) {
+    const std::size_t texel = corners[k].texel.index();
+    const Vec2 turn = least_turn(result.frame, -corners[k].texel.direction());
+    for (int s = 0; s < 2; ++s) {
+      const int i = 4 * s + k;
+      result.table[i] = static_cast<std::size_t>(first + s) * kShellPoints + texel;
+      result.turn[i] = turn * (kTableSize / (2 * scale[s]));
+      result.code_unit[i] = corners[k].weight * unit[s] * kDistanceStep;
+      result.cell_unit[i] = corners[k].weight * unit[s] * (2.f / kTableSize);
+      if (hidden_) hidden += corners[k].weight * share[s] * 4 * scale[s] * scale[s] * (*hidden_)[result.table[i]];
+    }
+  }
+  result.hidden_area = hidden_ ? hidden : rho > 1 ? kPi * here * here : 4;
+  const float half = rho > 1 ? 0.5f * std::asin(1 / rho) : 0;
+  result.sin_half = rho > 1 ? std::sin(half) : 2;
+  result.cos_half = std::cos(half);
+  return result;
+}
+
+float OccluderField::distance(const OccluderSamples& samples, const Vec3& c, float r) const {
+  // The cone cull: on the disk the angle g is at sqrt(2) sin(g / 2) from the centre, and the light reaches 1.1 r.
+  const Vec2 p = disk_from_direction(samples.frame.to_local(c));
+  const float reach = std::min(0.55f * r, 1.f);
+  const float farthest = samples.sin_half * std::sqrt(1 - reach * reach) + samples.cos_half * reach;
+  if (p.x * p.x + p.y * p.y > 2 * (farthest * farthest)) return kBeyondOccluder;
+
+  float d = 0;
+  for (int i = 0; i < 8; ++i) {
+    constexpr float last = kTableSize - 1, middle = last / 2;
+    const Vec2 turn = samples.turn[i];
+    const float u = turn.x * p.x + turn.y * p.y + middle, v = turn.x * p.y - turn.y * p.x + middle;
+    const float cu = std::clamp(u, 0.f, last), cv = std::clamp(v, 0.f, last);
+    const int x = std::min(static_cast<int>(cu), kTableSize - 2), y = std::min(static_cast<int>(cv), kTableSize - 2);
+    const float fx = cu - static_cast<float>(x), fy = cv - static_cast<float>(y);
+    const std::int8_t* const corner = tables_.data() + samples.table[i] * kTableCells + y * kTableSize + x;
+    const auto blend = [](float t, float a, float b) { return a + t * (b - a); };
+    const float code = blend(fy, blend(fx, corner[0], corner[1]), blend(fx, corner[kTableSize], corner[kTableSize + 1]));
+    // Beyond the square lies nothing but distance.
+    const float beyond = std::sqrt((u - cu) * (u - cu) + (v - cv) * (v - cv));
+    d += samples.code_unit[i] * code + samples.cell_unit[i] * beyond;
+  }
+
+  // Deviation: Eq. 9 takes every boundary for a straight line, which hides half of a square around an occluder however small that is. It
+  // cannot hide more than its own area, or Eq. 9 solved for D:
+  const float half_edge = std::max(0.5f * r, 1e-6f);
+  return std::max(d, half_edge - samples.hidden_area / (2 * half_edge));
+}
+
+float OccluderField::visibility(const Vec3& position, const Vec3& c, float r, Coverage coverage) const {
+  const float d = distance(samples(position), c, r), r_p = plane_radius(r);
+  // The map's frame says nothing about the turn of the square, so a gradient has no use here.
+  return coverage == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+}
+
+}  // namespace sightline::square_lights

@@ -1,0 +1,96 @@
+// OccluderField::distance() for many lights: the same operations in the same order, so that every target gives the same numbers.
+#include "methods/square_lights/occluder_field.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "methods/square_lights/occluder_lanes.cpp"
+#include "base/simd/targets.h"
+
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#include "base/simd/vec3-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::HWY_NAMESPACE {
+
+using namespace lanes;
+using square_lights::kTableCells;
+using square_lights::kTableSize;
+using square_lights::OccluderSamples;
+
+/// Two neighbouring codes of a row come in one word.
+HWY_INLINE V BlendCodes(D d, DI di, const std::int8_t* table, hn::Vec<DI> offset, V t) {
+  const auto word = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(table), offset);
+  const V a = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<24>(word)));
+  const V b = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<16>(word)));
+  return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+}
+
+void OccluderDistances(const std::int8_t* HWY_RESTRICT tables, const OccluderSamples& samples, const square_lights::LightLanes& lights,
+                       float* HWY_RESTRICT distances) {
+  const D d;
+  const DI di;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.f), last = hn::Set(d, kTableSize - 1.f), middle = hn::Set(d, (kTableSize - 1.f) / 2);
+  const auto last_corner = hn::Set(di, kTableSize - 2);
+  const V3 tangent = set3(d, samples.frame.tangent), bitangent = set3(d, samples.frame.bitangent), normal = set3(d, samples.frame.normal);
+  const V sin_half = hn::Set(d, samples.sin_half), cos_half = hn::Set(d, samples.cos_half);
+  const V hidden_area = hn::Set(d, samples.hidden_area), beyond_occluder = hn::Set(d, square_lights::kBeyondOccluder);
+  for (std::size_t k = 0; k < lights.x.size(); k += hn::Lanes(d)) {
+    // disk_from_direction()
+    const V3 c{hn::LoadU(d, lights.x.data() + k), hn::LoadU(d, lights.y.data() + k), hn::LoadU(d, lights.z.data() + k)};
+    const V lx = dot3(c, tangent), ly = dot3(c, bitangent), lz = dot3(c, normal);
+    const V length2 = hn::Add(hn::Mul(lx, lx), hn::Mul(ly, ly));
+    const V near_axis = hn::Div(one, hn::Sqrt(hn::Add(one, lz)));
+    const V opposite = hn::Sqrt(hn::Div(hn::Sub(one, lz), hn::Max(length2, hn::Set(d, 1e-30f))));
+    const V scale = hn::IfThenElse(hn::Gt(lz, hn::Set(d, -0.5f)), near_axis, opposite);
+    const V px = hn::Mul(ly, scale), py = hn::Mul(lx, scale);
+
+    const V r = hn::LoadU(d, lights.r.data() + k);
+    const V reach = hn::Min(hn::Mul(hn::Set(d, 0.55f), r), one);
+    const V farthest = hn::Add(hn::Mul(sin_half, hn::Sqrt(hn::Sub(one, hn::Mul(reach, reach)))), hn::Mul(cos_half, reach));
+    const V place2 = hn::Add(hn::Mul(px, px), hn::Mul(py, py));
+    const M out = hn::Gt(place2, hn::Mul(hn::Set(d, 2.f), hn::Mul(farthest, farthest)));
+    if (hn::AllTrue(d, out)) {
+      hn::StoreU(beyond_occluder, d, distances + k);
+      continue;
+    }
+
+    V sum = zero;
+    for (int i = 0; i < 8; ++i) {
+      const V cosine = hn::Set(d, samples.turn[i].x), sine = hn::Set(d, samples.turn[i].y);
+      const V u = hn::Add(hn::Add(hn::Mul(cosine, px), hn::Mul(sine, py)), middle);
+      const V v = hn::Add(hn::Sub(hn::Mul(cosine, py), hn::Mul(sine, px)), middle);
+      const V cu = hn::Min(hn::Max(u, zero), last), cv = hn::Min(hn::Max(v, zero), last);
+      const auto x = hn::Min(hn::ConvertTo(di, cu), last_corner), y = hn::Min(hn::ConvertTo(di, cv), last_corner);
+      const V fx = hn::Sub(cu, hn::ConvertTo(d, x)), fy = hn::Sub(cv, hn::ConvertTo(d, y));
+      const auto offset = hn::Add(hn::ShiftLeft<5>(y), x);
+      const std::int8_t* const table = tables + samples.table[i] * kTableCells;
+      const V top = BlendCodes(d, di, table, offset, fx), bottom = BlendCodes(d, di, table + kTableSize, offset, fx);
+      const V code = hn::Add(top, hn::Mul(fy, hn::Sub(bottom, top)));
+      const V du = hn::Sub(u, cu), dv = hn::Sub(v, cv);
+      const V beyond = hn::Sqrt(hn::Add(hn::Mul(du, du), hn::Mul(dv, dv)));
+      const V part = hn::Add(hn::Mul(hn::Set(d, samples.code_unit[i]), code), hn::Mul(hn::Set(d, samples.cell_unit[i]), beyond));
+      sum = hn::Add(sum, part);
+    }
+    const V half_edge = hn::Max(hn::Mul(hn::Set(d, 0.5f), r), hn::Set(d, 1e-6f));
+    const V least = hn::Sub(half_edge, hn::Div(hidden_area, hn::Mul(hn::Set(d, 2.f), half_edge)));
+    hn::StoreU(hn::IfThenElse(out, beyond_occluder, hn::Max(sum, least)), d, distances + k);
+  }
+}
+
+}  // namespace sightline::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline {
+HWY_EXPORT(OccluderDistances);
+}  // namespace sightline
+namespace sightline::square_lights {
+
+void occluder_distances(const OccluderField& field, const OccluderSamples& samples, const LightLanes& lights, std::span<float> distances) {
+  HWY_DYNAMIC_DISPATCH(OccluderDistances)(field.tables().data(), samples, lights, distances.data());
+}
+
+}  // namespace sightline::square_lights
+#endif
