@@ -173,19 +173,20 @@ Cells mirror(const Cells& means, bool columns, bool rows) {
 
 /// Sums of cells times their area, at corners.
 void sum_areas(const Cells& means, float* corners) {
-  std::array<glm::dvec3, kCorners> above{};
+  std::array<glm::dvec4, kCorners> above{};
   std::fill_n(corners, std::size_t{kCorners} * 4, 0.f);
   for (int y = 0; y < kCells; ++y) {
-    glm::dvec3 row(0);
+    glm::dvec4 row(0);
     float* out = corners + static_cast<std::size_t>(y + 1) * kCorners * 4;
     std::fill_n(out, 4, 0.f);
     for (int x = 0; x < kCells; ++x) {
-      row += glm::dvec3(means[static_cast<std::size_t>(y * kCells + x)]) * static_cast<double>(kCellSize * kCellSize);
-      glm::dvec3& sum = above[static_cast<std::size_t>(x + 1)];
+      const Color& mean = means[static_cast<std::size_t>(y * kCells + x)];
+      const double bright = luminance(mean);
+      row += glm::dvec4(glm::dvec3(mean), bright * bright) * static_cast<double>(kCellSize * kCellSize);
+      glm::dvec4& sum = above[static_cast<std::size_t>(x + 1)];
       sum += row;
       out += 4;
-      for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(sum[c]);
-      out[3] = 0;
+      for (int c = 0; c < 4; ++c) out[c] = static_cast<float>(sum[c]);
     }
   }
 }
@@ -314,26 +315,34 @@ BrdfTable::Slices BrdfTable::slices(const Vec3& wo) const {
   return result;
 }
 
-Color BrdfTable::mean(const Slices& slices, const Vec2& p, float r_p) const {
+Vec4 BrdfTable::mean_of_four(const Slices& slices, const Vec2& p, float r_p) {
   const Vec2 turned{slices.turn.x * p.x - slices.turn.y * p.y, slices.turn.y * p.x + slices.turn.x * p.y};
   const float half = r_p * 0.70710678f;
   const auto place = [](float v) { return std::clamp((v + 1) / kCellSize, 0.f, static_cast<float>(kCells)); };
   const float x[2] = {place(turned.x - half), place(turned.x + half)}, y[2] = {place(turned.y - half), place(turned.y + half)};
-  Color sum(0);
+  Vec4 sum(0);
   for (int s = 0; s < slices.count; ++s) {
     const auto corner = [table = slices.table[s]](float column, float row) {
       const int c = std::min(static_cast<int>(column), kCells - 1), r = std::min(static_cast<int>(row), kCells - 1);
       const float fc = column - static_cast<float>(c), fr = row - static_cast<float>(r);
       const auto at = [&](int i, int j) {
         const float* v = table + (static_cast<std::size_t>(r + j) * kCorners + static_cast<std::size_t>(c + i)) * 4;
-        return Color(v[0], v[1], v[2]);
+        return Vec4(v[0], v[1], v[2], v[3]);
       };
       return glm::mix(glm::mix(at(0, 0), at(1, 0), fc), glm::mix(at(0, 1), at(1, 1), fc), fr);
     };
     sum += slices.weight[s] * (corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0]));
   }
   // Differences of corners may leave a trace of rounding below 0.
-  return glm::max(sum / std::max(2 * r_p * r_p, 1e-12f), Color(0));
+  return glm::max(sum / std::max(2 * r_p * r_p, 1e-12f), Vec4(0));
+}
+
+Color BrdfTable::mean(const Slices& slices, const Vec2& p, float r_p) const { return Color(mean_of_four(slices, p, r_p)); }
+
+Moments BrdfTable::moments(const Slices& slices, const Vec2& p, float r_p) const {
+  const Vec4 mean = mean_of_four(slices, p, r_p);
+  const float bright = luminance(Color(mean));
+  return {bright, std::sqrt(std::max(0.f, mean.w - bright * bright)), 0};
 }
 
 }  // namespace sightline::square_lights

@@ -7,12 +7,13 @@
 #include "base/core/aligned.h"
 #include "base/core/context.h"
 #include "base/math/vec.h"
+#include "methods/square_lights/moments.h"
 #include "shade/bsdf.h"
 
 namespace sightline::square_lights {
 
 /// 32 x 32 cells over [-1, 1]² of the disk; a table holds 33 x 33 corners, each the integral over all cells left of and above it, as four
-/// floats (red, green, blue, nothing), so that two neighbours along a row are one load.
+/// floats (red, green, blue, square of the luminance), so that two neighbours along a row are one load.
 class BrdfTable {
  public:
   static constexpr int kCells = 32, kCorners = 33, kViews = 32;
@@ -40,8 +41,13 @@ class BrdfTable {
   /// Mean over the square of half diagonal `r_p` around `p` (not yet turned), of f cos as radiance per radiance and steradian: the integral
   /// over the square, which may leave the disk, by 2 r_p². The scalar definition of what the lanes do.
   Color mean(const Slices& slices, const Vec2& p, float r_p) const;
+  /// Mean and deviation of the luminance of f cos over the same square (between cells; third moments are not known and stay 0), for error
+  /// bounds. Of two or four slices the deviation is the greatest that fits them.
+  Moments moments(const Slices& slices, const Vec2& p, float r_p) const;
 
  private:
+  static Vec4 mean_of_four(const Slices& slices, const Vec2& p, float r_p);
+
   bool isotropic_ = true;
   AlignedVector<float> corners_;  ///< [view][row][column][4]; rows follow p.y, columns p.x
 };
