@@ -8,6 +8,7 @@
 #include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/fragments/analytic_kind.h"
+#include "methods/fragments/camera_lanes.h"
 #include "shade/material_eval.h"
 
 namespace sightline {
@@ -25,8 +26,7 @@ CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed,
   for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(kBatch);
   inside_.resize(kBatch), plain_.resize(kBatch);
   bsdf_.resize(kBatch), frame_.resize(kBatch), kind_.resize(kBatch), form_.resize(kBatch);
-  light_.resize(kBatch);
-  turned_geometric_.resize(kBatch), turned_shading_.resize(kBatch), albedo_.resize(kBatch), back_.resize(kBatch);
+  light_.resize(kBatch), back_.resize(kBatch);
 }
 
 void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec3Batch& radiance, PassStatistics& statistics) {
@@ -37,14 +37,15 @@ void CameraPass::render(std::size_t index, std::uint32_t sample, GBuffer& g, Vec
     place(sample);
     finish(sample, index, g, radiance, statistics);
   };
+  const int width = view_.width();
   for (int by = tile.y0; by < tile.y1; by += kBlock) {
     for (int bx = tile.x0; bx < tile.x1; bx += kBlock) {
       block_at_[count_ / kLanes] = g.at(bx, by);
+      const bool whole = bx + kBlock <= tile.x1 && by + kBlock <= tile.y1;
       for (int i = 0; i < static_cast<int>(kLanes); ++i, ++count_) {
-        const int x = bx + i % kBlock, y = by + i / kBlock;
-        inside_[count_] = x < tile.x1 && y < tile.y1;
-        pixel_[count_] = static_cast<std::uint32_t>(std::min(y, tile.y1 - 1) * view_.width() + std::min(x, tile.x1 - 1));
-        key_[count_] = pixel_key(seed_, pixel_[count_]);
+        const int x = bx + lane_x(i), y = by + lane_y(i);
+        inside_[count_] = whole || (x < tile.x1 && y < tile.y1);
+        pixel_[count_] = static_cast<std::uint32_t>(std::min(y, tile.y1 - 1) * width + std::min(x, tile.x1 - 1));
       }
       if (count_ == kBatch) flush();
     }
@@ -82,7 +83,10 @@ void CameraPass::begin(std::size_t index, std::uint32_t scope, GBuffer& g) {
 
 // Where sample `sample` of each pixel goes through it.
 void CameraPass::place(std::uint32_t sample) {
+  for (std::size_t i = 0; i < count_; ++i) key_[i] = pixel_key(seed_, pixel_[i]);
   std::fill_n(sample_.data(), count_, sample);
+  // Through the centre whatever the numbers are.
+  if (view_.filter().kind() == PixelFilter::Kind::centre) return;
   sobol_2d(key_.data(), sample_.data(), dimension::kPixel, count_, u0_.data(), u1_.data());
 }
 
@@ -93,9 +97,9 @@ void CameraPass::finish(std::uint32_t sample, std::size_t root, GBuffer& g, Vec3
   emit();
   to_sample_.clear();
   for (std::uint32_t i = 0; i < count_; ++i) {
-    const bool surface = kind_[i] != PixelKind::background && kind_[i] != PixelKind::dark;
-    if (surface && hits_.hit(i) && (sampling_ == Sampling::all || kind_[i] == PixelKind::general || kind_[i] == PixelKind::emitter))
-      to_sample_.push_back(i);
+    const PixelKind kind = kind_[i];
+    if (kind == PixelKind::background || kind == PixelKind::dark) continue;
+    if ((sampling_ == Sampling::all || kind == PixelKind::general || kind == PixelKind::emitter) && hits_.hit(i)) to_sample_.push_back(i);
   }
   sampled_.shade({&rays_, &hits_, &surfaces_, &bsdf_, &frame_, plain_.data(), key_.data(), sample}, to_sample_, light_, statistics);
   write(root, g, radiance);
@@ -116,9 +120,15 @@ void CameraPass::trace(PassStatistics& statistics) {
 
 void CameraPass::evaluate_materials() {
   const Scene& scene = world_.scene();
+  unsigned others = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    plain_[i] = hits_.hit(i) && surfaces_.plain[i];
-    kind_[i] = plain_[i] ? PixelKind::diffuse : PixelKind::background;
+    const bool hit = hits_.instance[i] != kNoHit, plain = hit & (surfaces_.plain[i] != 0);
+    plain_[i] = plain;
+    kind_[i] = plain ? PixelKind::diffuse : PixelKind::background;
+    others |= static_cast<unsigned>(hit & !plain);
+  }
+  if (others == 0) return;
+  for (std::size_t i = 0; i < count_; ++i) {
     if (!hits_.hit(i) || plain_[i]) continue;
     const Vec3 wo = -load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
     const MaterialId id = surfaces_.material[i] == kDefaultMaterial ? MaterialId{} : MaterialId{surfaces_.material[i]};
@@ -138,14 +148,15 @@ void CameraPass::evaluate_materials() {
 void CameraPass::emit() {
   const LightTable& lights = world_.lights();
   fill(light_, 0, count_, Color(0));
+  const bool has_environment = lights.has_environment();
   for (std::size_t i = 0; i < count_; ++i) {
+    if (surfaces_.light[i] == kNoLight && (!has_environment || hits_.hit(i))) continue;
     if (!inside_[i]) continue;
     const Vec3 direction = load(rays_.direction, i);
     if (!hits_.hit(i)) {
-      if (lights.has_environment()) store(light_, i, lights.environment(direction));
+      store(light_, i, lights.environment(direction));
       continue;
     }
-    if (surfaces_.light[i] == kNoLight) continue;
     kind_[i] = PixelKind::emitter;
     TexturePoint texture;
     if (!surfaces_.plain[i]) texture = world_.detail(rays_, hits_, i, view_.cone_width() + view_.cone_spread() * hits_.t[i]).texture;
@@ -153,55 +164,39 @@ void CameraPass::emit() {
   }
 }
 
-// Blocks of 4 x 4 pixels, row by row. What lies outside the picture is background, whatever else is written there.
+// Blocks of 4 x 4 pixels, array by array: one place in each of twenty arrays that lie a multiple of 4 KiB apart would throw the others out
+// of the cache. What lies outside the picture is background, whatever else is written there.
 void CameraPass::write(std::size_t root, GBuffer& g, Vec3Batch& radiance) {
-  const auto scatter = [&](std::size_t first, std::size_t at, const float* from, float* to) {
-    for (int row = 0; row < kBlock; ++row)
-      std::memcpy(to + at + static_cast<std::size_t>(row * g.stride), from + first + row * kBlock, kBlock * sizeof(float));
-  };
-  const auto scatter3 = [&](std::size_t first, std::size_t at, const Vec3Batch& from, Vec3Batch& to) {
-    scatter(first, at, from.x.data(), to.x.data()), scatter(first, at, from.y.data(), to.y.data());
-    scatter(first, at, from.z.data(), to.z.data());
-  };
-  turn_normals();
-  for (std::size_t first = 0; first < count_; first += kLanes) {
-    const std::size_t at = block_at_[first / kLanes];
-    scatter3(first, at, light_, radiance), scatter3(first, at, surfaces_.position, g.position);
-    scatter3(first, at, turned_geometric_, g.geometric_normal), scatter3(first, at, turned_shading_, g.shading_normal);
-    scatter3(first, at, albedo_, g.albedo);
-    scatter(first, at, surfaces_.error.data(), g.error.data()), scatter(first, at, hits_.t.data(), g.depth.data());
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t i = first + lane, to = at + lane % kBlock + lane / kBlock * static_cast<std::size_t>(g.stride);
-      if (!inside_[i]) continue;
-      g.kind[to] = kind_[i], g.back[to] = back_[i];
-      if (kind_[i] != PixelKind::analytic) continue;
-      g.glossy_index[to] = static_cast<std::uint32_t>(g.glossy[root].size());
-      g.glossy[root].push_back({bsdf_[i], *form_[i], frame_[i], -load(rays_.direction, i)});
+  const std::size_t blocks = count_ / kLanes, stride = static_cast<std::size_t>(g.stride);
+  const auto scatter = [&](const auto* from, auto* to) {
+    for (std::size_t block = 0; block < blocks; ++block, from += kLanes) {
+      auto* row = to + block_at_[block];
+      for (int y = 0; y < kBlock; ++y, row += stride) std::memcpy(row, from + y * kBlock, kBlock * sizeof *from);
     }
+  };
+  const auto scatter3 = [&](const Vec3Batch& from, Vec3Batch& to) {
+    scatter(from.x.data(), to.x.data()), scatter(from.y.data(), to.y.data()), scatter(from.z.data(), to.z.data());
+  };
+  bool lobes = false;
+  for (std::size_t i = 0; i < count_; ++i) lobes |= kind_[i] == PixelKind::analytic;
+  if (lobes) write_lobes(root, g);
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!hits_.hit(i) || plain_[i]) continue;
+    store(surfaces_.shading_normal, i, frame_[i].normal), store(surfaces_.albedo, i, bsdf_[i].albedo());
   }
+  turn_normals(rays_.direction, count_, surfaces_, hits_, back_.data());
+  scatter3(light_, radiance), scatter3(surfaces_.position, g.position), scatter3(surfaces_.albedo, g.albedo);
+  scatter3(surfaces_.geometric_normal, g.geometric_normal), scatter3(surfaces_.shading_normal, g.shading_normal);
+  scatter(surfaces_.error.data(), g.error.data()), scatter(hits_.t.data(), g.depth.data());
+  scatter(kind_.data(), g.kind.data()), scatter(back_.data(), g.back.data());
 }
 
-// Normals on the viewer's side, and albedos; shading normals give way where they do not see the camera on the side on which the geometric
-// normal does. Hits at infinity for rays that hit nothing.
-void CameraPass::turn_normals() {
+void CameraPass::write_lobes(std::size_t root, GBuffer& g) {
   for (std::size_t i = 0; i < count_; ++i) {
-    if (hits_.hit(i) && !plain_[i]) {
-      store(surfaces_.shading_normal, i, frame_[i].normal);
-      store(albedo_, i, bsdf_[i].albedo());
-    } else {
-      store(albedo_, i, load(surfaces_.albedo, i));
-    }
-    if (!hits_.hit(i)) hits_.t[i] = kInfinity;
-  }
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Vec3 direction = load(rays_.direction, i), geometric = load(surfaces_.geometric_normal, i);
-    const Vec3 shading = load(surfaces_.shading_normal, i);
-    const float by_geometric = glm::dot(direction, geometric), by_shading = glm::dot(direction, shading);
-    const float side = by_geometric > 0 ? -1.f : 1.f;
-    const bool usable = by_shading * by_geometric > 0;
-    back_[i] = side < 0;
-    store(turned_geometric_, i, side * geometric);
-    store(turned_shading_, i, side * (usable ? shading : geometric));
+    if (!inside_[i] || kind_[i] != PixelKind::analytic) continue;
+    const std::size_t lane = i % kLanes, to = block_at_[i / kLanes] + lane % kBlock + lane / kBlock * static_cast<std::size_t>(g.stride);
+    g.glossy_index[to] = static_cast<std::uint32_t>(g.glossy[root].size());
+    g.glossy[root].push_back({bsdf_[i], *form_[i], frame_[i], -load(rays_.direction, i)});
   }
 }
 

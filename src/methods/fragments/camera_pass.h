@@ -53,8 +53,8 @@ class CameraPass {
   void trace(PassStatistics& statistics);
   void evaluate_materials();
   void emit();
-  void turn_normals();
   void write(std::size_t root, GBuffer& g, Vec3Batch& radiance);
+  void write_lobes(std::size_t root, GBuffer& g);
 
   const World& world_;
   const View& view_;
@@ -75,7 +75,7 @@ class CameraPass {
   std::vector<Frame3> frame_;
   std::vector<std::optional<AnalyticBsdf>> form_;
   std::vector<PixelKind> kind_;
-  Vec3Batch light_, turned_geometric_, turned_shading_, albedo_;
+  Vec3Batch light_;
   AlignedVector<std::uint8_t> back_;
   std::vector<std::uint32_t> to_sample_;
 };

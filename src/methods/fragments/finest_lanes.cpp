@@ -20,29 +20,28 @@ using namespace lanes;
 FinestTerms Terms(const FinestRun& run, bool weigh, float* HWY_RESTRICT term, std::uint32_t* HWY_RESTRICT light_of) {
   const D d;
   const DU du;
-  const V zero = hn::Zero(d), red = hn::Set(d, 0.2126f), green = hn::Set(d, 0.7152f), blue = hn::Set(d, 0.0722f);
-  const V3 ns = set3(d, run.shading_normal), ng = set3(d, run.geometric_normal);
+  const V zero = hn::Zero(d);
+  const V3 p = set3(d, run.position), ns = set3(d, run.shading_normal), ng = set3(d, run.geometric_normal);
+  const float* HWY_RESTRICT weight = weigh ? run.points.power.data() : run.points.area.data();
   V all = zero;
   FinestTerms terms;
   for (std::size_t k = 0; k < run.count; k += hn::Lanes(d)) {
     const std::size_t i = run.first + k;
     const M valid = hn::FirstN(d, run.count - k);
-    const V3 wi = load3(d, run.light.wi, i);
-    const V cosine = dot3(wi, ns), pdf = hn::LoadU(d, run.light.pdf.data() + i);
-    const M reaches = hn::And(hn::And(valid, hn::Gt(cosine, zero)), hn::And(hn::Gt(dot3(wi, ng), zero), hn::Gt(pdf, zero)));
-    V value = hn::Div(hn::Mul(cosine, hn::Set(d, kInvPi)), pdf);
-    if (weigh) {
-      const V3 radiance = load3(d, run.light.radiance, i);
-      value = hn::Mul(value, hn::MulAdd(radiance.x, red, hn::MulAdd(radiance.y, green, hn::Mul(radiance.z, blue))));
-    }
-    value = hn::IfThenElseZero(reaches, value);
+    const V3 towards = sub3(load3(d, run.ends.position, i), p);
+    const V cosine = dot3(towards, ns), side = dot3(towards, ng), behind = dot3(towards, load3(d, run.ends.normal, i));
+    const M both = hn::Gt(hn::LoadU(d, run.points.two_sided.data() + i), zero);
+    const V away = hn::IfThenElse(both, hn::Abs(behind), hn::Neg(behind)), squared = dot3(towards, towards);
+    const M reaches = hn::And(hn::And(valid, hn::Gt(cosine, zero)), hn::And(hn::Gt(side, zero), hn::Gt(away, zero)));
+    const V geometry = hn::Div(hn::Mul(hn::Mul(cosine, away), hn::Set(d, kInvPi)), hn::Mul(squared, squared));
+    const V value = hn::IfThenElseZero(reaches, hn::Mul(geometry, hn::LoadU(d, weight + i)));
     const M positive = hn::Gt(value, zero);
     all = hn::Add(all, value);
     terms.asked += static_cast<std::uint32_t>(hn::CountTrue(d, positive));
     const auto index = hn::Iota(du, static_cast<std::uint32_t>(i));
-    hn::BlendedStore(value, valid, d, term + i);
+    hn::BlendedStore(value, valid, d, term + run.lane + k);
     hn::BlendedStore(hn::IfThenElse(hn::RebindMask(du, positive), index, hn::Set(du, kNoQuery)), hn::RebindMask(du, valid), du,
-                     light_of + i);
+                     light_of + run.lane + k);
   }
   terms.all = hn::GetLane(hn::SumOfLanes(d, all));
   return terms;
@@ -55,12 +54,12 @@ FinestSum Sum(const FinestRun& run, bool irradiance, const float* HWY_RESTRICT t
   V3 light = {zero, zero, zero};
   FinestSum sum;
   for (std::size_t k = 0; k < run.count; k += hn::Lanes(d)) {
-    const std::size_t i = run.first + k;
-    const M seen = hn::And(hn::FirstN(d, run.count - k), hn::Gt(hn::LoadU(d, weight + i), hn::Set(d, 0.5f)));
-    const V value = hn::IfThenElseZero(seen, hn::LoadU(d, term + i));
+    const std::size_t lane = run.lane + k;
+    const M seen = hn::And(hn::FirstN(d, run.count - k), hn::Gt(hn::LoadU(d, weight + lane), hn::Set(d, 0.5f)));
+    const V value = hn::IfThenElseZero(seen, hn::LoadU(d, term + lane));
     visible = hn::Add(visible, value);
     sum.seen += static_cast<std::uint32_t>(hn::CountTrue(d, seen));
-    if (irradiance) light = add3(light, scale3(load3(d, run.light.radiance, i), value));
+    if (irradiance) light = add3(light, scale3(load3(d, run.points.radiance, run.first + k), value));
   }
   sum.visible = hn::GetLane(hn::SumOfLanes(d, visible));
   if (irradiance)

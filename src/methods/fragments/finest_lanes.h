@@ -5,22 +5,23 @@
 #include <cstdint>
 
 #include "base/math/vec.h"
-#include "shade/light_table.h"
+#include "methods/fragments/finest_points.h"
 
 namespace sightline {
 
-/// Light samples [first, first + count) of one pixel.
+/// Light points [first, first + count) as one pixel sees them; in arrays of answers they are lanes [lane, lane + count).
 struct FinestRun {
-  Vec3 shading_normal, geometric_normal;
-  const LightSampleBatch& light;
-  std::size_t first, count;
+  Vec3 position, shading_normal, geometric_normal;
+  const FinestPoints& points;
+  const QueryEnds& ends;  ///< of the points
+  std::size_t first, count, lane;
 };
 struct FinestTerms {
   float all = 0;            ///< sum of the terms
   std::uint32_t asked = 0;  ///< terms above 0
 };
-/// term[i] = cos / (pi pdf), irradiance / pi of unit radiance, times the sample's luminance if `weigh`; 0 for samples that reach the pixel
-/// from below either normal, or not at all. light_of[i] becomes i, or kNoQuery where the term is 0.
+/// Terms of [Koa2017, Eq. 3]: irradiance / pi of unit radiance, times the point's luminance if `weigh`; 0 for points below either normal's
+/// horizon, and for those that face away. light_of becomes the point, or kNoQuery where the term is 0.
 FinestTerms finest_terms(const FinestRun& run, bool weigh, float* term, std::uint32_t* light_of);
 
 struct FinestSum {

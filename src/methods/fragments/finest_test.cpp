@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "base/math/vec3_batch.h"
-#include "base/sample/sobol.h"
 #include "methods/fragments/unshadowed.h"
 
 namespace sightline {
@@ -21,32 +20,45 @@ FinestTest::FinestTest(const World& world, const View& view, Visibility& visibil
       camera_(view.pinhole().position),
       orthographic_(view.pinhole().orthographic),
       exact_(visibility.exact()),
-      seed_(seed),
-      worker_(visibility.worker()) {}
+      worker_(visibility.worker()),
+      points_(seed) {
+  queries_.kind = BatchKind::shadow;
+  queries_.surface_ends = SurfaceEnds::area_light;
+}
 
 void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample,
                       std::uint32_t rays, int channels, std::array<std::vector<float>, 3>& values, PassStatistics& statistics) {
   const bool ratio = channels == 1;
   for (int c = 0; c < channels; ++c) values[static_cast<std::size_t>(c)].resize(pixels.size());
   sums_.assign(pixels.size(), {});
+  if (pixels.empty()) return;
+  const std::uint32_t whole = std::max(std::max(options_.rays, options_.smooth_rays), rays);
+  points_.make(world_.lights(), light, sample, whole, queries_);
   open_.resize(pixels.size());
   std::iota(open_.begin(), open_.end(), 0u);
-  const std::uint32_t first = options_.early_out ? std::max(rays / 4, 16u) : rays;
-  trace(g, light, pixels, open_, sample, rays, 0, std::min(first, rays), ratio, statistics);
+  const std::uint32_t first = std::min(options_.early_out ? std::max(rays / 4, 16u) : rays, rays);
+  trace(g, pixels, open_, 0, first, ratio, statistics);
+  if (!ratio) {
+    // Pixels that stop early have a quarter of the samples.
+    const float scale = static_cast<float>(whole) / static_cast<float>(first);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = sums_[i].irradiance[c] * scale;
+    }
+  }
   if (first < rays) {
     close_saturated(g, pixels);
-    trace(g, light, pixels, open_, sample, rays, first, rays - first, ratio, statistics);
+    trace(g, pixels, open_, first, rays - first, ratio, statistics);
   }
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const Sums& s = sums_[i];
-    if (ratio) {
+  if (ratio) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const Sums& s = sums_[i];
       values[0][i] = s.seen == 0 ? 0.f : s.seen == s.asked ? 1.f : s.visible / s.all;
-      continue;
     }
-    // Those that stopped early have a quarter of the samples.
-    const float scale = static_cast<float>(rays) / static_cast<float>(first);
-    const bool stopped = first < rays && (s.seen == 0 || s.seen == s.asked) && !std::binary_search(open_.begin(), open_.end(), i);
-    for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = s.irradiance[c] * (stopped ? scale : 1.f);
+    return;
+  }
+  const float scale = static_cast<float>(whole) / static_cast<float>(rays);
+  for (const std::uint32_t i : open_) {
+    for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = sums_[i].irradiance[c] * scale;
   }
 }
 
@@ -65,70 +77,41 @@ void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t
     }
     return false;
   };
-  const std::size_t before = open_.size();
-  closed_.clear();
-  for (std::size_t k = 0; k < before; ++k) {
-    if (saturated(open_[k]) && !beside_mixed(open_[k])) closed_.push_back(open_[k]);
-  }
+  std::erase_if(open_, [&](std::uint32_t i) { return saturated(i) && !beside_mixed(i); });
   for (const std::uint32_t i : open_) mixed_[pixels[i]] = 0;
-  std::erase_if(open_, [&](std::uint32_t i) { return std::binary_search(closed_.begin(), closed_.end(), i); });
 }
 
-void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels,
-                       std::span<const std::uint32_t> which, std::uint32_t sample, std::uint32_t rays, std::uint32_t first,
+// Every packet of rays is of one pixel, which is kind to the tracer.
+void FinestTest::trace(const GBuffer& g, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which, std::uint32_t first,
                        std::uint32_t count, bool ratio, PassStatistics& statistics) {
-  const std::size_t at_once = std::max<std::size_t>(kLanesAtOnce / count, 1), lanes = at_once * count;
-  position_.resize(lanes), key_.resize(padded(lanes)), index_.resize(padded(lanes)), entry_.resize(padded(lanes));
-  for (auto* numbers : {&u0_, &u1_, &selection_, &term_, &weights_}) numbers->resize(padded(lanes) + kLanes);
-  queries_.resize_lights(lanes);
-  light_.resize(lanes + kLanes), queries_.light.resize(lanes + kLanes);
-  std::fill_n(queries_.semantic.data(), lanes, static_cast<std::uint8_t>(QuerySemantic::surface));
-  queries_.kind = BatchKind::shadow;
-  queries_.surface_ends = SurfaceEnds::area_light;
-  const auto stride = static_cast<std::uint32_t>(g.stride);
+  const std::size_t at_once = std::max<std::size_t>(kLanesAtOnce / count, 1);
+  for (auto* numbers : {&term_, &weights_}) numbers->resize(padded(at_once * count) + kLanes);
+  const auto stride = static_cast<std::uint32_t>(g.stride), width = static_cast<std::uint32_t>(g.width);
   for (std::size_t begin = 0; begin < which.size(); begin += at_once) {
-    const std::size_t points = std::min(at_once, which.size() - begin), n = points * count;
+    const std::size_t points = std::min(at_once, which.size() - begin);
     queries_.eye.resize(points);
+    queries_.resize_queries(points * count + kLanes);
+    queries_.size = points * count;
+    runs_.clear();
     for (std::size_t p = 0; p < points; ++p) {
-      const std::uint32_t at = pixels[which[begin + p]];
-      const std::uint32_t x = at % stride, y = at / stride;
+      const std::uint32_t at = pixels[which[begin + p]], x = at % stride, y = at / stride;
       const Vec3 position = load(g.position, at), normal = load(g.geometric_normal, at);
       float area = 0;
       if (!exact_) area = footprint_.area(orthographic_ ? camera_ : normalize_or(position - camera_, -normal), g.depth[at], normal);
       queries_.eye.set(p, position, normal, g.error[at], area, at);
-      std::fill_n(key_.data() + p * count, count, pixel_key(seed_, y * static_cast<std::uint32_t>(g.width) + x));
-      std::iota(index_.data() + p * count, index_.data() + (p + 1) * count, sample * rays + first);
-      fill(position_, p * count, count, position);
-    }
-    sobol_2d(key_.data(), index_.data(), dimension::pair_of(0, dimension::kLightPoint), n, u0_.data(), u1_.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      const AreaLight::Member& member = light.members[light.pick(u0_[i])];
-      entry_[i] = member.entry, selection_[i] = member.probability * static_cast<float>(rays);
-    }
-    world_.lights().sample_entries(entry_, selection_, position_, u0_, u1_, n, light_);
+      std::fill_n(queries_.eye_of.data() + p * count, count, static_cast<std::uint32_t>(p));
 
-    queries_.resize_queries(n);
-    for (std::size_t p = 0; p < points; ++p) {
-      const std::uint32_t at = pixels[which[begin + p]];
-      const Receiver receiver = receiver_at(g, static_cast<int>(at % stride), static_cast<int>(at / stride));
-      const FinestRun run{receiver.shading_normal, receiver.geometric_normal, light_, p * count, count};
-      FinestTerms terms = finest_terms(run, ratio, term_.data(), queries_.light_of.data());
-      if (receiver.glossy && ratio) terms = weigh_by_lobe(receiver, run);
+      const std::size_t from = points_.first(y * width + x) + first;
+      runs_.push_back({position, load(g.shading_normal, at), normal, points_, queries_.light, from, count, p * count});
+      FinestTerms terms = finest_terms(runs_.back(), ratio, term_.data(), queries_.light_of.data());
+      if (ratio && g.kind[at] == PixelKind::analytic)
+        terms = weigh_by_lobe(receiver_at(g, static_cast<int>(x), static_cast<int>(y)), runs_.back());
       Sums& sums = sums_[which[begin + p]];
       sums.all += terms.all, sums.asked += terms.asked;
-      std::fill_n(queries_.eye_of.data() + p * count, count, static_cast<std::uint32_t>(p));
-    }
-    // The ends are the samples themselves: arrays change hands instead of being copied.
-    std::swap(queries_.light.position, light_.point), std::swap(queries_.light.normal, light_.normal);
-    std::swap(queries_.light.error, light_.point_error);
-    queries_.light.size = n;
-    if (!exact_) {
-      for (std::size_t i = 0; i < n; ++i)
-        queries_.light.id[i] = index_[i], queries_.light.cell_area[i] = world_.lights().area(entry_[i]) / selection_[i];
     }
     worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
     for (std::size_t p = 0; p < points; ++p) {
-      const FinestSum sum = finest_sum({Vec3(0), Vec3(0), light_, p * count, count}, !ratio, term_.data(), weights_.data());
+      const FinestSum sum = finest_sum(runs_[p], !ratio, term_.data(), weights_.data());
       Sums& sums = sums_[which[begin + p]];
       sums.seen += sum.seen, sums.visible += sum.visible, sums.irradiance += sum.irradiance;
     }
@@ -138,10 +121,12 @@ void FinestTest::trace(const GBuffer& g, const AreaLight& light, std::span<const
 // Surfaces with a lobe: samples count by what they contribute there.
 FinestTerms FinestTest::weigh_by_lobe(const Receiver& receiver, const FinestRun& run) {
   FinestTerms terms;
-  for (std::size_t i = run.first; i < run.first + run.count; ++i) {
-    if (term_[i] > 0) term_[i] *= lobe_weight(receiver, load(light_.wi, i));
-    if (!(term_[i] > 0)) queries_.light_of[i] = kNoQuery;
-    terms.all += term_[i], terms.asked += term_[i] > 0;
+  for (std::size_t k = 0; k < run.count; ++k) {
+    const std::size_t lane = run.lane + k;
+    if (term_[lane] > 0)
+      term_[lane] *= lobe_weight(receiver, glm::normalize(load(queries_.light.position, run.first + k) - receiver.position));
+    if (!(term_[lane] > 0)) queries_.light_of[lane] = kNoQuery;
+    terms.all += term_[lane], terms.asked += term_[lane] > 0;
   }
   return terms;
 }

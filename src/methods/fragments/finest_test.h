@@ -10,10 +10,10 @@
 #include "methods/eye_footprint.h"
 #include "methods/fragments/area_light.h"
 #include "methods/fragments/finest_lanes.h"
+#include "methods/fragments/finest_points.h"
 #include "methods/fragments/g_buffer.h"
 #include "methods/fragments/unshadowed.h"
 #include "methods/method.h"
-#include "shade/light_table.h"
 
 namespace sightline {
 
@@ -38,8 +38,8 @@ class FinestTest {
 
  private:
   /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
-  void trace(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which,
-             std::uint32_t sample, std::uint32_t rays, std::uint32_t first, std::uint32_t count, bool ratio, PassStatistics& statistics);
+  void trace(const GBuffer& g, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which, std::uint32_t first,
+             std::uint32_t count, bool ratio, PassStatistics& statistics);
 
   void close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels);
   FinestTerms weigh_by_lobe(const Receiver& receiver, const FinestRun& run);
@@ -54,17 +54,14 @@ class FinestTest {
   EyeFootprint footprint_;
   Vec3 camera_;
   bool orthographic_, exact_;
-  std::uint64_t seed_;
   std::unique_ptr<VisibilityWorker> worker_;
+  FinestPoints points_;
   std::vector<Sums> sums_;
-  std::vector<std::uint32_t> open_, closed_;
+  std::vector<std::uint32_t> open_;
   std::vector<std::uint8_t> mixed_;  ///< laid out as the GBuffer; 0 between calls
-  Vec3Batch position_;
-  AlignedVector<std::uint32_t> key_, index_, entry_;
-  AlignedVector<float> u0_, u1_, selection_, term_;
-  LightSampleBatch light_;
+  std::vector<FinestRun> runs_;
+  AlignedVector<float> term_, weights_;
   QueryBatch queries_;
-  AlignedVector<float> weights_;
 };
 
 }  // namespace sightline

@@ -32,7 +32,9 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
                      TileProgress& progress, PassStatistics& statistics) {
   progress.done.clear();
   progress.children.assign(fragments.begin(), fragments.end());
-  begin(g, index, sample);
+  begin(index, sample);
+  reach_.build(g, g.root(index), *light_);
+  reached_ = false;
   clear(g, g.root(index), signal);
   // What geometry left of level 0 has no neighbours to be smoothed with.
   std::erase_if(progress.children, [&](const Fragment& f) {
@@ -46,14 +48,14 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
 void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
                              PassStatistics& statistics) {
   if (progress.children.empty()) return;
-  begin(g, index, sample);
+  begin(index, sample);
+  reached_ = true;  // stable fragments were tested, and so are their children
   refine_children(g, sample, signal, progress, statistics);
 }
 
-void Refiner::begin(const GBuffer& g, std::size_t index, std::uint32_t sample) {
+void Refiner::begin(std::size_t index, std::uint32_t sample) {
   probes_.begin(static_cast<std::uint32_t>(index), sample);
   finest_test_.begin(static_cast<std::uint32_t>(index));
-  reach_.build(g, g.root(index), *light_);
   finest_.clear(), geometry_pixels_.clear();
 }
 
@@ -73,7 +75,7 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     for (std::size_t i = 0; i < children_.size(); ++i) {
       const Fragment f = children_[i];
       if (f.x >= g.width || f.y >= g.height) continue;
-      const ReachPyramid::Reach reach = reach_.of(f);
+      const ReachPyramid::Reach reach = reached_ ? ReachPyramid::Reach::all : reach_.of(f);
       if (reach == ReachPyramid::Reach::mixed) {
         subdivide(f, 0, children_);
       } else if (reach == ReachPyramid::Reach::none) {

@@ -64,7 +64,7 @@ class Refiner {
   RefinementCounts& counts() { return counts_; }
 
  private:
-  void begin(const GBuffer& g, std::size_t index, std::uint32_t sample);
+  void begin(std::size_t index, std::uint32_t sample);
   void refine_children(const GBuffer& g, std::uint32_t sample, LightSignal& signal, TileProgress& progress, PassStatistics& statistics);
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void classify(const GBuffer& g, LightSignal& signal);
@@ -90,6 +90,7 @@ class Refiner {
   const LightPoints* points_ = nullptr;
 
   ReachPyramid reach_;
+  bool reached_ = false;  ///< the light is known to reach all fragments at hand
   std::vector<Fragment> current_, children_, stable_, unconfirmed_, done_;
   std::vector<ProbeMasks> masks_, stable_masks_;
   std::vector<std::uint64_t> confirmed_;
