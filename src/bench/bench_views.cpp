@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
@@ -20,7 +21,9 @@ struct ViewInfo {
   float fov_deg = 0;
   std::vector<std::string> area_lights, point_lights, directional_lights;
   std::string environment;  ///< file below the data folder
+  std::string environment_mapping = "latlong";
   bool own_materials = false;
+  IVec2 size_px{1280, 960};
 };
 
 constexpr const char* kSponza = "scenes/sponza-dabrovic/sponza.obj";
@@ -28,6 +31,24 @@ constexpr const char* kConference = "scenes/conference/conference.ply";
 constexpr const char* kKitchen = "pbrt/kitchen/scene-v4.pbrt";
 constexpr const char* kStaircase = "pbrt/staircase2/scene-v4.pbrt";
 constexpr const char* kForest = "environments/phalzer_forest_01_1k.hdr";
+
+/// Content on a ground under an environment, 800x600.
+struct SkyContent {
+  const char *name, *file, *parameters;
+};
+constexpr std::array<SkyContent, 5> kSkyContents = {{{"bunny", "meshes/stanford-bunny.obj", ",normals=smooth"},
+                                                     {"armadillo", "meshes/armadillo.obj", ",normals=smooth"},
+                                                     {"teapot", "meshes/teapot.obj", ",normals=smooth,min_vertices=40000"},
+                                                     {"avocado", "gltf/Avocado/Avocado.gltf", ""},
+                                                     {"duck", "gltf/Duck/Duck.glb", ""}}};
+/// The plain name is that of the forest.
+struct SkyLight {
+  const char *suffix, *file, *mapping;
+};
+constexpr std::array<SkyLight, 4> kSkyLights = {{{"", kForest, "latlong"},
+                                                 {"-sun", "environments/noon_grass_1k.hdr", "latlong"},
+                                                 {"-window", "environments/st_fagans_interior_1k.hdr", "latlong"},
+                                                 {"-grace", "environments/grace_probe.hdr", "angular"}}};
 
 /// 24 point lights in three rows of eight, by turns at two heights.
 std::vector<std::string> rows_of_points() {
@@ -47,6 +68,26 @@ std::vector<std::string> grid_of_areas() {
   for (int i = 0; i < 9; ++i)
     lights.push_back(fmt::format("{},640,{} 0,-1,0 100x100 20,20,20", 300 + 400 * (i % 3 - 1), -200 + 400 * (i / 3 - 1)));
   return lights;
+}
+
+/// Every content under every environment; two objects that shadow each other, and what moves in parts, under forest and sun.
+std::vector<ViewInfo> sky_views() {
+  std::vector<ViewInfo> views;
+  const auto add = [&](const std::string& name, const std::string& spec, const SkyLight& light, const char* file) {
+    ViewInfo view{.name = name + "-sky" + light.suffix, .spec = spec, .needs = {light.file}};
+    if (file) view.needs.emplace_back(file);
+    view.environment = light.file, view.environment_mapping = light.mapping;
+    view.size_px = {800, 600};
+    views.push_back(std::move(view));
+  };
+  for (const SkyContent& content : kSkyContents) {
+    for (const SkyLight& light : kSkyLights)
+      add(content.name, fmt::format("builtin:ground,content={}{}", content.file, content.parameters), light, content.file);
+  }
+  for (const SkyLight& light : {kSkyLights[0], kSkyLights[1]}) add("pair", "builtin:pair", light, nullptr);
+  add("movers-5", "builtin:movers,parts=5,vertices=80000", kSkyLights[0], nullptr);
+  add("movers-12", "builtin:movers,parts=12,vertices=60000", kSkyLights[0], nullptr);
+  return views;
 }
 
 std::vector<ViewInfo> make_views() {
@@ -73,7 +114,7 @@ std::vector<ViewInfo> make_views() {
   ViewInfo nine = conference;
   nine.name = "conference-9", nine.area_lights = grid_of_areas();
   const char* dragon = "meshes/dragon_vrip.ply";
-  return {
+  std::vector<ViewInfo> views = {
       {.name = "dragon-room", .spec = fmt::format("builtin:room,content={}", dragon), .needs = {dragon}},
       sponza,
       {.name = "hairball-room", .spec = "builtin:room,content=hairball"},
@@ -86,6 +127,8 @@ std::vector<ViewInfo> make_views() {
       {.name = "kitchen-vpl", .spec = kKitchen, .needs = {kKitchen}, .own_materials = true},
       {.name = "staircase", .spec = kStaircase, .needs = {kStaircase}, .own_materials = true},
   };
+  for (ViewInfo& view : sky_views()) views.push_back(std::move(view));
+  return views;
 }
 
 const std::vector<ViewInfo>& views() {
@@ -143,12 +186,16 @@ std::optional<BenchView> load_bench_view(const std::string& name, const std::fil
   }
   LightRequest lights;
   lights.area = info.area_lights, lights.point = info.point_lights, lights.directional = info.directional_lights;
-  if (!info.environment.empty()) lights.environment = (*folder / info.environment).string();
+  if (!info.environment.empty()) {
+    lights.environment = (*folder / info.environment).string();
+    lights.environment_mapping = info.environment_mapping;
+  }
   apply_lights(view.scene, lights, context);
   ViewRequest request;
   request.eye = info.eye, request.target = info.target;
   if (info.fov_deg > 0) request.fov_deg = info.fov_deg;
   view.camera = choose_camera(view.scene, request);
+  view.size_px = info.size_px;
   return view;
 }
 

@@ -58,5 +58,25 @@ TEST(BenchViews, PointsAndAreasStandWhereTheListSays) {
   }
 }
 
+TEST(BenchViews, SkiesFrameTheirContentUnderFourEnvironments) {
+  for (const char* content : {"bunny", "armadillo", "teapot", "avocado", "duck"}) {
+    for (const char* light : {"", "-sun", "-window", "-grace"}) EXPECT_NO_THROW(check_bench_view(std::string(content) + "-sky" + light));
+  }
+  const char* data = std::getenv("SIGHTLINE_DATA");
+  if (!data) return;
+  if (const std::optional<BenchView> view = load_bench_view("teapot-sky-grace", data, Context())) {
+    ASSERT_TRUE(view->scene.environment);
+    EXPECT_EQ(view->scene.environment->mapping, EnvironmentMapping::angular);
+    std::size_t vertices = 0;
+    for (const Mesh& mesh : view->scene.meshes) {
+      if (mesh.name == "ground") continue;
+      EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+      vertices += mesh.positions.size();
+    }
+    EXPECT_GE(vertices, 40000u);
+    EXPECT_EQ(view->size_px, IVec2(800, 600));
+  }
+}
+
 }  // namespace
 }  // namespace sightline
