@@ -81,7 +81,7 @@ TEST(GltfAnimation, SeveralAnimationsPlayTogetherWithAWarning) {
   EXPECT_FLOAT_EQ(pose(scene, 3).instances[0].world_from_object[1].y, 4);
 }
 
-TEST(GltfAnimation, MorphWeightsAreIgnoredWithAWarning) {
+TEST(GltfAnimation, WeightsOfAMeshWithoutTargetsAreIgnoredWithAWarning) {
   GltfFile file = moving_triangle();
   file.json["animations"][0]["channels"][0]["target"]["path"] = "weights";
   const Scene scene = file.load();

@@ -22,8 +22,18 @@ GltfFile rich_file() {
   file.push("textures", {{"source", 0}});
   file.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   file.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.1}}}});
-  file.add_root(
-      {{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}})}, {"camera", 0}});
+  const int joints = file.add_array<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, kUnsignedByte, 3, "VEC4");
+  const int weights = file.add_array<float>({1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}, kFloat, 3, "VEC4");
+  const int inverse = file.add_array<float>(
+      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, kFloat, 2, "MAT4");
+  file.add_root({{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+                                         {"targets", {{{"POSITION", positions}}, {{"NORMAL", positions}}}},
+                                         {"indices", indices},
+                                         {"material", 0}})},
+                 {"skin", 0},
+                 {"camera", 0}});
+  file.add_root({{"name", "bone"}});
+  file.push("skins", {{"joints", {0, 1}}, {"inverseBindMatrices", inverse}});
   file.push("animations", {{"samplers", {{{"input", times}, {"output", values}}}},
                            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
   return file;

@@ -33,6 +33,7 @@ int component_count(const JsonView& type) {
   constexpr std::array<std::string_view, 4> kNames = {"SCALAR", "VEC2", "VEC3", "VEC4"};
   const auto found = std::find(kNames.begin(), kNames.end(), type.as_string());
   if (found != kNames.end()) return static_cast<int>(found - kNames.begin()) + 1;
+  if (type.as_string() == "MAT4") return 16;
   if (type.as_string().starts_with("MAT")) return 0;
   throw input_error(fmt::format("'{}' is no accessor type", type.as_string())).at(type.path());
 }
@@ -189,11 +190,13 @@ std::vector<float> read_floats(Document& document, std::size_t index, int compon
   return read_elements<float>(document, info, index, FloatComponent{info.normalized});
 }
 
-std::vector<std::uint32_t> read_unsigned(Document& document, std::size_t index) {
+std::vector<std::uint32_t> read_unsigned(Document& document, std::size_t index, int components) {
   const AccessorInfo info = accessor_info(document, index);
   const bool is_unsigned =
       info.component_type == kUnsignedByte || info.component_type == kUnsignedShort || info.component_type == kUnsignedInt;
-  if (info.components != 1 || !is_unsigned) throw input_error("indices must be unsigned integer scalars").at(info.path);
+  if (info.components != components || !is_unsigned) {
+    throw input_error(fmt::format("indices must be unsigned integers, {} an element", components)).at(info.path);
+  }
   return read_elements<std::uint32_t>(document, info, index, UnsignedComponent{});
 }
 

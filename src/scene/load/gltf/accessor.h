@@ -12,7 +12,7 @@ namespace sightline::gltf {
 /// What an accessor says of itself, checked as far as it can be without its data.
 struct AccessorInfo {
   std::string path;
-  int components = 0;  ///< 1 to 4; matrices are not read
+  int components = 0;  ///< 1 to 4, or 16 of a 4 x 4 matrix by columns; 0 = a smaller matrix, which is not read
   std::uint64_t component_type = 0;
   bool normalized = false;
   std::uint64_t count = 0;
@@ -23,7 +23,7 @@ AccessorInfo accessor_info(const Document& document, std::size_t index);
 
 /// Elements as floats, `components` of them each (normalised integers become 0..1 or -1..1). The accessor must have exactly as many.
 std::vector<float> read_floats(Document& document, std::size_t index, int components);
-/// Scalars of an unsigned integer type.
-std::vector<std::uint32_t> read_unsigned(Document& document, std::size_t index);
+/// Elements of an unsigned integer type, `components` of them each.
+std::vector<std::uint32_t> read_unsigned(Document& document, std::size_t index, int components = 1);
 
 }  // namespace sightline::gltf

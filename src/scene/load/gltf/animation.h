@@ -1,4 +1,4 @@
-// Rigid animation of nodes.
+// Animation of nodes and of the weights of morph targets.
 #pragma once
 
 #include "scene/load/gltf/import.h"

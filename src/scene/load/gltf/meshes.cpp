@@ -2,6 +2,7 @@
 
 #include "base/core/error.h"
 #include "scene/load/gltf/accessor.h"
+#include "scene/load/gltf/skins.h"
 #include "scene/load/gltf/triangles.h"
 #include "scene/load/load.h"
 
@@ -18,20 +19,59 @@ SharedArray<T> read_array(Document& document, std::size_t accessor, int componen
 
 }  // namespace
 
-std::span<const MeshId> MeshImporter::meshes(std::size_t gltf_mesh) {
-  if (const auto found = meshes_.find(gltf_mesh); found != meshes_.end()) return found->second;
+std::vector<MeshImporter::Part>& MeshImporter::parts(std::size_t gltf_mesh) {
+  if (const auto found = parts_.find(gltf_mesh); found != parts_.end()) return found->second;
   import_.context.check_cancelled();
   const JsonView mesh = import_.document.element("meshes", gltf_mesh);
   const std::string name = mesh.name();
   const JsonView primitives = mesh.require("primitives");
-  std::vector<MeshId> ids;
+  std::vector<Part> parts;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
-    add_primitive(primitives.at(i), primitives.size() == 1 ? name : fmt::format("{}/{}", name, i), ids);
+    add_primitive(primitives.at(i), primitives.size() == 1 ? name : fmt::format("{}/{}", name, i), parts);
   }
-  return meshes_[gltf_mesh] = std::move(ids);
+  return parts_[gltf_mesh] = std::move(parts);
 }
 
-void MeshImporter::add_primitive(const JsonView& primitive, const std::string& name, std::vector<MeshId>& ids) {
+std::vector<PlacedPart> MeshImporter::place(const JsonView& reference, NodeId node, std::optional<SkinId> skin) {
+  std::vector<PlacedPart> placed;
+  for (Part& part : parts(import_.document.resolve("meshes", reference))) {
+    const bool skinned = skin && part.deformation && part.deformation->influences > 0;
+    if (skin && !skinned) ++without_joints_;
+    if (skinned || (part.deformation && !part.deformation->targets.empty())) {
+      add_bent(part, node, skinned ? skin : std::nullopt, reference);
+      placed.push_back({MeshId(import_.scene.meshes.size() - 1), skinned});
+      continue;
+    }
+    if (!part.shared.valid()) {
+      part.shared = MeshId(import_.scene.meshes.size());
+      import_.scene.meshes.push_back(part.mesh);
+    }
+    placed.push_back({part.shared, false});
+  }
+  return placed;
+}
+
+void MeshImporter::add_bent(const Part& part, NodeId node, std::optional<SkinId> skin, const JsonView& reference) {
+  if (skin && part.largest_joint >= import_.scene.skins[skin->index].joints.size()) {
+    throw input_error(
+        fmt::format("a vertex hangs on joint {}, the skin has {}", part.largest_joint, import_.scene.skins[skin->index].joints.size()))
+        .at(reference.path());
+  }
+  if (!part.deformation->targets.empty() && part.deformation->targets.size() != import_.scene.nodes[node.index].weights.size()) {
+    throw input_error("the primitives of a mesh must have equally many morph targets").at(reference.path());
+  }
+  // The scene, posed, holds bent copies of the vertices.
+  const Mesh& mesh = part.mesh;
+  import_.document.charge(sizeof(Mesh) + mesh.positions.size_bytes() + mesh.normals.size_bytes() + mesh.tangents.size_bytes(),
+                          reference.path());
+  Mesh bent = mesh;
+  bent.deformation = part.deformation;
+  bent.skin = skin.value_or(SkinId());
+  bent.weights_node = node;
+  import_.scene.meshes.push_back(std::move(bent));
+}
+
+void MeshImporter::add_primitive(const JsonView& primitive, const std::string& name, std::vector<Part>& parts) {
   const std::uint64_t mode = primitive.unsigned_or("mode", kTriangles);
   if (mode > kTriangleFan) throw input_error(fmt::format("{} is no primitive mode", mode)).at(primitive.path() + "/mode");
   if (mode < kTriangles) {
@@ -44,7 +84,6 @@ void MeshImporter::add_primitive(const JsonView& primitive, const std::string& n
     ++without_positions_;
     return;
   }
-  morphed_ += primitive.find("targets").has_value();
   coloured_ += attributes.find("COLOR_0").has_value();
 
   const std::size_t position_accessor = import_.document.resolve("accessors", *position);
@@ -84,17 +123,28 @@ void MeshImporter::add_primitive(const JsonView& primitive, const std::string& n
     ++without_uvs_;
   }
 
+  PrimitiveDeformation bending = read_deformation(import_, primitive, mesh.positions.size());
   if (uses_few_vertices(mesh)) {
-    import_.document.charge(mesh.triangles.size() * (sizeof(UVec3) + 3 * (2 * sizeof(Vec3) + sizeof(Vec2))), primitive.path());
-    drop_unused_vertices(mesh);
+    const std::size_t vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2) + 3 * sizeof(Vec3) * bending.deformation.targets.size() +
+                                     (sizeof(float) + sizeof(std::uint16_t)) * bending.deformation.influences;
+    import_.document.charge(mesh.triangles.size() * (sizeof(UVec3) + 3 * vertex_bytes), primitive.path());
+    keep_vertices(bending.deformation, drop_unused_vertices(mesh));
   }
   if (has_broken_normals) {
     import_.document.charge(mesh.normals.size_bytes(), primitive.path());
     repair_normals(mesh);
     ++broken_normals_;
   }
-  ids.emplace_back(import_.scene.meshes.size());
-  import_.scene.meshes.push_back(std::move(mesh));
+  Part part;
+  if (bending.bends()) {
+    bending.deformation.positions = mesh.positions;
+    bending.deformation.normals = mesh.normals;
+    bending.deformation.tangents = mesh.tangents;
+    part.largest_joint = bending.largest_joint;
+    part.deformation = std::make_shared<const Deformation>(std::move(bending.deformation));
+  }
+  part.mesh = std::move(mesh);
+  parts.push_back(std::move(part));
 }
 
 void MeshImporter::choose_material(const JsonView& primitive, Mesh& mesh, std::uint64_t& uv_set) {
@@ -203,7 +253,7 @@ void MeshImporter::warn_of_losses() const {
   };
   warn(lines_and_points_, "primitives of lines or points are left out");
   warn(without_positions_, "primitives without positions are left out");
-  warn(morphed_, "primitives have morph targets, which are ignored");
+  warn(without_joints_, "primitives of skinned meshes lack joints or weights and do not bend");
   warn(coloured_, "primitives have vertex colours, which are ignored");
   warn(without_uvs_, "primitives lack the texture coordinates that their material uses");
   warn(broken_normals_, "primitives have normals of length zero, which are replaced by those of their faces");

@@ -6,6 +6,7 @@
 #include "base/core/error.h"
 #include "scene/load/gltf/accessor.h"
 #include "scene/load/gltf/cameras_lights.h"
+#include "scene/load/gltf/skins.h"
 
 namespace sightline::gltf {
 namespace {
@@ -37,7 +38,7 @@ std::vector<std::size_t> root_nodes(Import& import) {
   return roots;
 }
 
-Node read_node(const JsonView& json, NodeId parent) {
+Node read_node(Import& import, const JsonView& json, NodeId parent) {
   Node node;
   node.name = json.name();
   node.parent = parent;
@@ -45,6 +46,7 @@ Node read_node(const JsonView& json, NodeId parent) {
     matrix->read_vector({&node.matrix[0].x, 16});
     node.has_matrix = true;
   }
+  node.weights = default_weights(import, json);
   json.vector_or("translation", {&node.translation.x, 3});
   json.vector_or("scale", {&node.scale.x, 3});
   Vec4 xyzw{0, 0, 0, 1};
@@ -100,6 +102,21 @@ void drop_unusable_instances(Import& import) {
   if (dropped > 0) import.warn(fmt::format("{} placements with a singular or infinite transformation are left out", dropped));
 }
 
+/// Meshes that bend but never otherwise than at t = 0 are as good as any other.
+void settle_still_meshes(Scene& scene) {
+  const std::vector<bool> moves = moving_nodes(scene);
+  for (Mesh& mesh : scene.meshes) {
+    if (!mesh.is_deformable()) continue;
+    const bool morphs = !scene.nodes[mesh.weights_node.index].weights_track.times_s.empty();
+    const std::vector<NodeId> none;
+    const std::vector<NodeId>& joints = mesh.skin.valid() ? scene.skins[mesh.skin.index].joints : none;
+    if (morphs || std::any_of(joints.begin(), joints.end(), [&](NodeId joint) { return moves[joint.index]; })) continue;
+    mesh.deformation.reset();
+    mesh.skin = {};
+    mesh.weights_node = {};
+  }
+}
+
 }  // namespace
 
 NodeMap import_nodes(Import& import) {
@@ -121,7 +138,7 @@ NodeMap import_nodes(Import& import) {
       throw input_error(fmt::format("node {} is reached twice: the nodes must form trees", visit.node)).at(visit.reference);
     }
     const JsonView json = import.document.element("nodes", visit.node);
-    import.scene.nodes.push_back(read_node(json, visit.parent));
+    import.scene.nodes.push_back(read_node(import, json, visit.parent));
     if (const std::optional<JsonView> children = json.find("children")) {
       for (std::size_t i = children->size(); i-- > 0;) {
         const JsonView child = children->at(i);
@@ -136,7 +153,7 @@ void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes)
   Scene& scene = import.scene;
   const std::vector<bool> moves = moving_nodes(scene);
   const std::vector<Mat4> world = node_matrices(scene, 0);
-  std::size_t skinned = 0;
+  SkinImporter skins(import, nodes);
   std::vector<std::pair<std::size_t, NodeId>> in_order(nodes.begin(), nodes.end());
   std::sort(in_order.begin(), in_order.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   for (const auto& entry : in_order) {
@@ -147,13 +164,20 @@ void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes)
     if (const std::optional<JsonView> light = json.extension("KHR_lights_punctual")) add_light(import, *light, id);
     const std::optional<JsonView> reference = json.find("mesh");
     if (!reference) continue;
-    skinned += json.find("skin").has_value();
 
-    const std::span<const MeshId> parts = meshes.meshes(import.document.resolve("meshes", *reference));
+    const std::optional<JsonView> skin_reference = json.find("skin");
+    const std::optional<SkinId> skin = skin_reference ? skins.skin(*skin_reference) : std::nullopt;
+    std::vector<PlacedPart> parts = meshes.place(*reference, id, skin);
+    // What hangs on joints is where these are: the node itself, and placements relative to it, do not count [glTF2, §3.7.3.3].
+    for (const PlacedPart& part : parts) {
+      if (part.skinned) scene.instances.push_back({.name = scene.nodes[id.index].name, .mesh = part.mesh});
+    }
+    std::erase_if(parts, [](const PlacedPart& part) { return part.skinned; });
     const auto add_instances = [&](NodeId node, const Mat4& world_from_object) {
       import.document.charge(parts.size() * sizeof(Instance), json.path());
-      for (const MeshId mesh : parts) {
-        scene.instances.push_back({.name = scene.nodes[id.index].name, .mesh = mesh, .world_from_object = world_from_object, .node = node});
+      for (const PlacedPart& part : parts) {
+        scene.instances.push_back(
+            {.name = scene.nodes[id.index].name, .mesh = part.mesh, .world_from_object = world_from_object, .node = node});
       }
     };
     const std::optional<JsonView> instancing = json.extension("EXT_mesh_gpu_instancing");
@@ -172,12 +196,14 @@ void attach_to_nodes(Import& import, const NodeMap& nodes, MeshImporter& meshes)
       }
     }
   }
-  if (skinned > 0) import.warn(fmt::format("{} skinned meshes are shown in their bind pose", skinned));
+  skins.warn_of_losses();
 
   // Everything stands where it is at t = 0; lights stay in their node's space until the scene is posed.
   Scene posed = pose(scene, 0);
   scene.instances = std::move(posed.instances);
   scene.cameras = std::move(posed.cameras);
+  scene.meshes = std::move(posed.meshes);
+  settle_still_meshes(scene);
   drop_unusable_instances(import);
 }
 

@@ -53,7 +53,7 @@ bool uses_few_vertices(const Mesh& mesh) {
   return 3 * mesh.triangles.size() < mesh.positions.size() / 2;
 }
 
-void drop_unused_vertices(Mesh& mesh) {
+std::vector<std::uint32_t> drop_unused_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> kept;
   kept.reserve(3 * mesh.triangles.size());
   for (const UVec3& t : mesh.triangles) kept.insert(kept.end(), {t.x, t.y, t.z});
@@ -74,6 +74,7 @@ void drop_unused_vertices(Mesh& mesh) {
   mesh.normals = gather(mesh.normals, kept);
   mesh.uvs = gather(mesh.uvs, kept);
   mesh.tangents = gather(mesh.tangents, kept);
+  return kept;
 }
 
 void repair_normals(Mesh& mesh) {

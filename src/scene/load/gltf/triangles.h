@@ -20,8 +20,9 @@ std::vector<UVec3> assemble_triangles(std::uint64_t mode, std::size_t vertex_cou
 
 /// True where the triangles use but a small part of the vertices, which the mesh then shares with others.
 bool uses_few_vertices(const Mesh& mesh);
-/// Copies the vertices that triangles use into arrays of the mesh's own. Else every primitive would bring along all that it shares.
-void drop_unused_vertices(Mesh& mesh);
+/// Copies the vertices that triangles use into arrays of the mesh's own and tells which these are. Else every primitive would bring along
+/// all that it shares.
+std::vector<std::uint32_t> drop_unused_vertices(Mesh& mesh);
 /// Gives vertices with a zero normal that of the triangles around them.
 void repair_normals(Mesh& mesh);
 
