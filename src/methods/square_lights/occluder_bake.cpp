@@ -11,11 +11,10 @@ namespace {
 // Tables that a worker makes at a time: some ten milliseconds.
 constexpr std::size_t kTables = 32;
 
-/// Directions of a shell's tables that may hit the bounding sphere: all of the square within it. Deviation: the paper's maps end at the
-/// hemisphere; the corners of the square are directions behind it, and there is no reason to call them open within the object.
+/// Directions of a shell's tables that may hit the bounding sphere; within it, those of the whole disk.
 DiskRays shell_rays(const DiskGrid& grid, int shell, float zoom) {
-  const float rho = shell_radius(shell), radius = apparent_radius(rho);
-  return make_disk_rays(grid, zoom, [&](const Vec2& p) { return rho <= 1 || p.x * p.x + p.y * p.y <= radius * radius; });
+  const float radius = apparent_radius(shell_radius(shell));
+  return make_disk_rays(grid, zoom, [&](const Vec2& p) { return p.x * p.x + p.y * p.y <= radius * radius; });
 }
 
 }  // namespace
@@ -40,6 +39,9 @@ void bake_occluder_tables(const Tracer& tracer, const Vec3& center, float radius
       const Vec3 origin = center + shell_radius(shell) * radius * out;
       const std::span<std::uint8_t> visible =
           map_tracer.trace(shells[static_cast<std::size_t>(shell)], frame_from_normal(-out), origin, nullptr, 1);
+      // What lies behind is not known. Deviation: where the object may be all around it is as its rim says, as for vertices; the paper's
+      // open half would make a boundary where there is none.
+      if (shell_radius(shell) <= 1) fill_outside(grid, false, visible);
       make_distance_table(visible, options.resolution, tables.subspan(i * kTableCells).first<kTableCells>());
     }
     const std::scoped_lock lock(mutex);
