@@ -6,6 +6,7 @@
 
 #include "base/core/error.h"
 #include "commands.h"
+#include "session/material_option.h"
 
 namespace sightline::app {
 namespace {
@@ -40,7 +41,9 @@ int run_bake(const CommandLine& line, Console& console, Context& context) {
 
   LoadOptions load_options;
   load_options.data_directory = line.common.data_directory;
+  const std::vector<MaterialRequest> materials = parse_materials(command.materials, load_options.data_directory);
   Scene scene = load_scenes(command.scenes, load_options, context);
+  apply_materials(scene, materials);
   apply_lights(scene, command.lights, context);
   scene = pose(std::move(scene), static_cast<float>(command.frame.value_or(0)) / command.fps);
   const std::shared_ptr<const World> world = World::build(std::move(scene), {}, context);

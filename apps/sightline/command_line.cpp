@@ -8,6 +8,7 @@
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
+#include "session/material_option.h"
 #include "session/options_text.h"
 #include "sightline/version.h"
 
@@ -115,6 +116,27 @@ void add_render_method(CLI::App& app, RenderCommand& r) {
   app.add_option("--set", r.render.settings, "a setting of the method or visibility; repeatable")
       ->type_name("KEY=VALUE")
       ->take_all()
+/// The models with their parameters and defaults, one a line.
+std::string material_listing() {
+  std::string text = "Models of --material, with defaults ('sightline info material:' explains them):";
+  for (const MaterialChoice& choice : material_choices()) {
+    text += "\n  " + choice.name;
+    for (const auto& [key, value] : choice.parameters.to_text()) text += fmt::format(",{}={}", key, value.empty() ? "..." : value);
+  }
+  return text;
+}
+
+void add_materials(CLI::App& app, std::vector<std::string>& materials) {
+  app.add_option("--material", materials,
+                 "replaces the reflectance of the material NAME, or of everything but lights and a built-in stage; repeatable")
+      ->type_name("[NAME=]MODEL[,KEY=VALUE...]")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->group("Materials");
+  app.footer(material_listing());
+}
+
       ->expected(1)
       ->allow_extra_args(false)
       ->group(group);
@@ -245,6 +267,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   compare->add_option("--html", line.compare.html, "a self-contained report")->type_name("FILE");
   compare->add_option("--difference", line.compare.difference, "false-colour FLIP error of the first image (.png)")->type_name("FILE");
   compare->add_flag("--mask", line.compare.mask, "leave out background and emitters (the reference's surface layer)");
+  add_materials(*render, line.render.materials);
   compare->add_option("--exposure", line.compare.exposure_ev, "stops before tone mapping, for psnr, ssim and flip")->type_name("EV");
   compare->add_option("--fail-over", line.compare.fail_over, "exit with 6 if a metric is worse than VALUE; repeatable")
       ->type_name("METRIC=VALUE")
@@ -257,7 +280,9 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   methods->add_flag("--json", line.methods.json, "as JSON");
 
   CLI::App* info = app.add_subcommand("info", "what is in a scene, picture or frame file");
-  info->add_option("FILE", line.info.files, "scene, picture, slice or checkpoint; builtin: lists the built-in scenes")->required();
+  info->add_option("FILE", line.info.files, "scene, picture, slice or checkpoint; builtin: lists the built-in scenes, material: the models")
+      ->required();
+  add_materials(*info, line.info.materials);
   info->add_flag("--json", line.info.json, "as JSON");
 
   CLI::App* bake = app.add_subcommand("bake", "precompute and store what a method needs");
@@ -273,6 +298,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
     bench->add_option(name, target, help)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
   };
+  add_materials(*bake, line.render.materials);
   add_list("--view", line.bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
   add_list("--part", line.bench.parts,
            "fragments: table, curve, sizes, interactive; visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)",

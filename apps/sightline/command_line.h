@@ -22,6 +22,7 @@ struct CommonOptions {
 
 struct RenderCommand {
   std::vector<std::string> scenes, outputs;
+  std::vector<std::string> materials;  ///< option texts
   ViewRequest view;
   LightRequest lights;
   RenderRequest render;
@@ -54,7 +55,7 @@ struct MethodsCommand {
 };
 
 struct InfoCommand {
-  std::vector<std::string> files;
+  std::vector<std::string> files, materials;
   bool json = false;
 };
 

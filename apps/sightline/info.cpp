@@ -12,6 +12,7 @@
 #include "image/io/image_io.h"
 #include "methods/method.h"
 #include "scene/builtin/builtin.h"
+#include "session/material_option.h"
 
 namespace sightline::app {
 namespace {
@@ -132,6 +133,25 @@ Json builtin_json() {
   return list;
 }
 
+Json material_models_json() {
+  Json list = Json::array();
+  for (const MaterialChoice& choice : material_choices()) {
+    Json entry = {{"name", choice.name}, {"help", choice.help}, {"parameters", Json::object()}};
+    for (const auto& [name, value] : choice.parameters.to_text()) entry["parameters"][name] = value;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+void print_material_models() {
+  for (const MaterialChoice& choice : material_choices()) {
+    fmt::print("{}  {}\n", choice.name, choice.help);
+    const auto values = choice.parameters.to_text();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      fmt::print("    {:<24} {}\n", values[i].first + "=" + values[i].second, choice.parameters.schema().settings()[i].info.help);
+  }
+}
+
 void print_builtins() {
   for (const BuiltinScene& scene : builtin_scenes()) {
     fmt::print("builtin:{}  {}\n", scene.name, scene.help);
@@ -171,8 +191,12 @@ bool is_scene(const std::string& file) {
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
-Json describe(const std::string& file, const LoadOptions& options, const Context& context) {
-  if (is_scene(file)) return scene_json(file, load_scene(file, options, context));
+Json describe(const std::string& file, const LoadOptions& options, const std::vector<MaterialRequest>& materials, const Context& context) {
+  if (is_scene(file)) {
+    Scene scene = load_scene(file, options, context);
+    apply_materials(scene, materials);
+    return scene_json(file, scene);
+  }
   const std::vector<std::byte> bytes = read_file(file);
   if (bytes.size() >= 7 && std::memcmp(bytes.data(), "SLFRAME", 7) == 0) return frame_json(file, bytes);
   return picture_json(file);
@@ -185,6 +209,7 @@ int run_info(const CommandLine& line, Context& context) {
   options.data_directory = line.common.data_directory;
   // Counting does not need the triangles of a stream.
   options.keep_sources = true;
+  const std::vector<MaterialRequest> materials = parse_materials(line.info.materials, options.data_directory);
   Json all = Json::array();
   for (const std::string& file : line.info.files) {
     if (file == "builtin:") {
@@ -192,7 +217,12 @@ int run_info(const CommandLine& line, Context& context) {
       all.push_back({{"kind", "builtin scenes"}, {"scenes", builtin_json()}});
       continue;
     }
-    const Json json = describe(file, options, context);
+    if (file == "material:") {
+      if (!line.info.json) print_material_models();
+      all.push_back({{"kind", "material models"}, {"models", material_models_json()}});
+      continue;
+    }
+    const Json json = describe(file, options, materials, context);
     if (!line.info.json) print_plain(json, 0);
     all.push_back(json);
   }

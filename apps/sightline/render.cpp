@@ -8,6 +8,7 @@
 #include "base/core/error.h"
 #include "commands.h"
 #include "image/io/image_io.h"
+#include "session/material_option.h"
 #include "session/memory_needs.h"
 #include "session/options_text.h"
 #include "session/output.h"
@@ -198,7 +199,9 @@ int run_render(const CommandLine& line, Console& console, Context& context) {
   LoadOptions load_options;
   load_options.data_directory = line.common.data_directory;
   Scene scene = load_scenes(command.scenes, load_options, context);
+  const std::vector<MaterialRequest> materials = parse_materials(command.materials, load_options.data_directory);
   apply_lights(scene, command.lights, context);
+  apply_materials(scene, materials);
   const Sequence sequence{command, scene, start.seconds(), frames.first == frames.last, console, context, open_bakes(command)};
 
   std::shared_ptr<const World> world;
