@@ -1,4 +1,6 @@
 // OccluderField::distance() for many lights: the same operations in the same order, so that every target gives the same numbers.
+#include <cmath>
+
 #include "methods/square_lights/occluder_field.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -35,7 +37,7 @@ void OccluderDistances(const std::int8_t* HWY_RESTRICT tables, const OccluderSam
   const auto last_corner = hn::Set(di, kTableSize - 2);
   const V3 tangent = set3(d, samples.frame.tangent), bitangent = set3(d, samples.frame.bitangent), normal = set3(d, samples.frame.normal);
   const V sin_half = hn::Set(d, samples.sin_half), cos_half = hn::Set(d, samples.cos_half);
-  const V hidden_area = hn::Set(d, samples.hidden_area), beyond_occluder = hn::Set(d, square_lights::kBeyondOccluder);
+  const V hidden_edge = hn::Set(d, std::sqrt(0.5f * samples.hidden_area)), beyond_occluder = hn::Set(d, square_lights::kBeyondOccluder);
   for (std::size_t k = 0; k < lights.x.size(); k += hn::Lanes(d)) {
     // disk_from_direction()
     const V3 c{hn::LoadU(d, lights.x.data() + k), hn::LoadU(d, lights.y.data() + k), hn::LoadU(d, lights.z.data() + k)};
@@ -74,7 +76,9 @@ void OccluderDistances(const std::int8_t* HWY_RESTRICT tables, const OccluderSam
       sum = hn::Add(sum, part);
     }
     const V half_edge = hn::Max(hn::Mul(hn::Set(d, 0.5f), r), hn::Set(d, 1e-6f));
-    const V least = hn::Sub(half_edge, hn::Div(hidden_area, hn::Mul(hn::Set(d, 2.f), half_edge)));
+    const V s = hn::Div(hidden_edge, half_edge);
+    const V corner = hn::Mul(hn::Set(d, 1.41421356f), hn::Sub(one, s)), straight = hn::Sub(one, hn::Mul(s, s));
+    const V least = hn::Mul(half_edge, hn::IfThenElse(hn::Lt(s, hn::Set(d, 0.41421356f)), corner, straight));
     hn::StoreU(hn::IfThenElse(out, beyond_occluder, hn::Max(sum, least)), d, distances + k);
   }
 }
