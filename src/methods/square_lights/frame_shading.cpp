@@ -180,6 +180,8 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
                         const BrdfTable& brdf, Scratch& scratch) const {
   const LightSet& lights = receiver.lights;
   const std::size_t n = lights.x.size();
+  ++scratch.counts.receivers;
+  if (n == 0) return Color(0);
   for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
     if (values->size() < n) values->resize(n);
   }
@@ -205,9 +207,87 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
   }
   std::size_t lit = 0;
   const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), lights, scratch.visible, plane_scale_, lit);
-  ++scratch.counts.receivers;
   scratch.counts.lights += lit;
   return radiance;
+}
+
+Color FrameShading::lit_locally(std::uint32_t o, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position,
+                                const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const {
+  if (bake_.sources().empty()) return Color(0);
+  const Receiver& receiver = receivers_[o];
+  const ShadingObject& object = bake_.scene().objects()[o];
+  const Vec3 world = transform_point(receiver.world_from_object, position);
+  scratch.local.clear(), scratch.patch_distance.clear();
+  for (const Source& source : bake_.sources()) {
+    scratch.patches.resize(source.light.count());
+    if (source.field)
+      source.field->lights_at(world - source.origin, scratch.patches);
+    else
+      source.light.lights_at(world, scratch.patches);
+    for (const PatchLight& patch : scratch.patches) scratch.local.add(patch.light), scratch.patch_distance.push_back(patch.distance);
+  }
+  scratch.local.finish();
+  const LightSet& lights = scratch.local;
+  const std::size_t n = lights.x.size();
+  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
+    if (values->size() < n) values->resize(n);
+  }
+  std::fill_n(scratch.visible.begin(), n, 1.f);
+  LightSet& turned = scratch.in_field;
+  turned.turned_from(lights, Mat3(receiver.object_from_world));
+  const bool still = !object.moving && !object.deformable && !bake_.patch_coverage().empty();
+  if (still) {
+    std::fill_n(scratch.visible.begin(), lights.count, 0.f);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (hit.weight[j] == 0) continue;
+      const std::uint8_t* coverage = bake_.patch_coverage().data() + (hit.vertex[j] - object.first) * lights.count;
+      for (std::size_t k = 0; k < lights.count; ++k) scratch.visible[k] += hit.weight[j] * static_cast<float>(coverage[k]) / 255;
+    }
+  } else if (tables.count > 0) {
+    self_distances(tables, turned, std::span(scratch.distance).first(n), {}, {});
+    multiply_coverage(scratch.distance, {}, {}, turned, plane_scale_, coverage_ == Coverage::gradient ? Coverage::average : coverage_,
+                      scratch.visible);
+  }
+  const Color result = [&] {
+    if (!object.deformable) hide_locally(o, world, scratch);
+    turned.turned_from(lights, Mat3(receiver.object_from_world));
+    std::size_t lit = 0;
+    const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), turned, scratch.visible, plane_scale_, lit);
+    scratch.counts.lights += lit;
+    return radiance;
+  }();
+  return result;
+}
+
+void FrameShading::hide_locally(std::uint32_t o, const Vec3& world, Scratch& scratch) const {
+  const LightSet& lights = scratch.local;
+  for (const Occluder& occluder : bake_.occluders()) {
+    if (occluder.object == o) continue;
+    const Mat4 field_from_world = glm::inverse(occluder.world_from_field);
+    const float scale = scale_of(occluder.world_from_field);
+    const Vec3 center = transform_point(occluder.world_from_field, occluder.field.center());
+    // What lies beyond a light hides nothing of it.
+    const float nearest = glm::length(center - world) - occluder.field.radius() * scale;
+    if (std::none_of(scratch.patch_distance.begin(), scratch.patch_distance.end(), [&](float d) { return nearest < d; })) continue;
+    scratch.in_field.turned_from(lights, Mat3(field_from_world));
+    occluder_distances(occluder.field, occluder.field.samples(transform_point(field_from_world, world)), scratch.in_field.lanes(),
+                       scratch.other);
+    scratch.counts.occluder_tests += lights.count;
+    for (std::size_t k = 0; k < lights.count; ++k) {
+      const float d = scratch.other[k], r_p = lights.r[k] * plane_scale_;
+      if (nearest >= scratch.patch_distance[k] || d >= 0.70710678f * r_p) continue;
+      scratch.visible[k] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+    }
+  }
+  if (!receivers_[o].planes) return;
+  for (const PlanarOccluder& plane : bake_.planes()) {
+    for (std::size_t k = 0; k < lights.count; ++k) {
+      const Vec3 c(lights.x[k], lights.y[k], lights.z[k]);
+      if (!(scratch.visible[k] > 0) || plane.along(world, c) >= scratch.patch_distance[k] * (1 - 1e-3f)) continue;
+      const float r_p = lights.r[k] * plane_scale_, d = plane.distance(world, c);
+      scratch.visible[k] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+    }
+  }
 }
 
 Color FrameShading::by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const {
@@ -244,23 +324,28 @@ Color FrameShading::shade_vertex(std::uint32_t i, Scratch& scratch) const {
   const ShadingVertices& vertices = bake_.scene().vertices();
   const Receiver& receiver = receivers_[object];
   const BrdfTable* brdf = bake_.brdf(vertices.material[i]);
-  if (brdf == nullptr || world_lights_.count == 0) return Color(0);
+  if (brdf == nullptr) return Color(0);
   ReceiverTables tables;
-  tables_of(object, {{i, i, i}, {1, 0, 0}}, 1, tables, scratch);
+  const VertexHit own{{i, i, i}, {1, 0, 0}};
+  tables_of(object, own, 1, tables, scratch);
   const Frame3 frame = tables.count > 0 ? tables.frame[0] : vertex_frame(vertices.normal[i], vertices.tangent[i]);
-  return lit(receiver, tables, vertices.position[i], frame, towards_eye(receiver, vertices.position[i]), *brdf, scratch);
+  const Vec3 wo = towards_eye(receiver, vertices.position[i]);
+  return lit(receiver, tables, vertices.position[i], frame, wo, *brdf, scratch) +
+         lit_locally(object, own, tables, vertices.position[i], frame, wo, *brdf, scratch);
 }
 
 Color FrameShading::shade_point(const VertexHit& hit, std::uint32_t object, std::uint32_t material, const Vec3& position,
                                 const Frame3& frame, const Vec3& wo, Scratch& scratch) const {
   const Receiver& receiver = receivers_[object];
   const BrdfTable* brdf = bake_.brdf(material);
-  if (brdf == nullptr || world_lights_.count == 0) return Color(0);
+  if (brdf == nullptr) return Color(0);
   ReceiverTables tables;
   tables_of(object, hit, 3, tables, scratch);
   const auto turn = [&](const Vec3& v) { return normalize_or(transform_vector(receiver.object_from_world, v), v); };
   const Frame3 local = frame_from_normal_tangent(turn(frame.normal), turn(frame.tangent));
-  return lit(receiver, tables, transform_point(receiver.object_from_world, position), local, turn(wo), *brdf, scratch);
+  const Vec3 here = transform_point(receiver.object_from_world, position);
+  return lit(receiver, tables, here, local, turn(wo), *brdf, scratch) +
+         lit_locally(object, hit, tables, here, local, turn(wo), *brdf, scratch);
 }
 
 }  // namespace sightline::square_lights

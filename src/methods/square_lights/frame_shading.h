@@ -31,6 +31,9 @@ class FrameShading {
   /// Buffers of one thread.
   struct Scratch {
     AlignedVector<float> visible, distance, other, gradient_x, gradient_y;
+    LightSet local, in_field;
+    std::vector<PatchLight> patches;
+    std::vector<float> patch_distance;
     std::vector<Color> transport;
     std::vector<float> wavelets;
     AlignedVector<std::int8_t> expanded[3];
@@ -63,6 +66,9 @@ class FrameShading {
   void tables_of(std::uint32_t object, const VertexHit& hit, int count, ReceiverTables& tables, Scratch& scratch) const;
   Color lit(const Receiver& receiver, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
             const BrdfTable& brdf, Scratch& scratch) const;
+  Color lit_locally(std::uint32_t object, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position, const Frame3& frame,
+                    const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const;
+  void hide_locally(std::uint32_t object, const Vec3& world, Scratch& scratch) const;
   void hide(const Receiver& receiver, const Vec3& position, Scratch& scratch) const;
   Color by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const;
   Vec3 towards_eye(const Receiver& receiver, const Vec3& position) const;

@@ -28,7 +28,7 @@ const MethodInfo& SquareLightsMethod::info() const {
     i.help = "environments as a few squares, visibility by precomputed distances: moving objects, live materials";
     i.citation = "RotatableSquareLights";
     i.progressive = i.deterministic = i.needs_bake = true;
-    i.lights = {LightKind::environment};
+    i.lights = {LightKind::rectangle, LightKind::disk, LightKind::sphere, LightKind::mesh, LightKind::environment};
     i.materials = all_material_kinds();
     // What has no table: light that passes, and choices between tables.
     std::erase_if(i.materials, [](MaterialKind kind) {

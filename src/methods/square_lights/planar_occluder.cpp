@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/math/frame.h"
 #include "methods/square_lights/shade_lanes.h"
@@ -64,6 +65,11 @@ std::optional<PlanarOccluder> PlanarOccluder::fit(std::span<const Vec3> points, 
   result.normal_ = normal;
   for (const Vec2& p : hull) result.corners_.push_back(a + p.x * frame.tangent + p.y * frame.bitangent);
   return result;
+}
+
+float PlanarOccluder::along(const Vec3& position, const Vec3& c) const {
+  const float t = glm::dot(normal_, corners_[0] - position) / glm::dot(normal_, c);
+  return t > 0 ? t : std::numeric_limits<float>::infinity();
 }
 
 float PlanarOccluder::distance(const Vec3& position, const Vec3& c) const {

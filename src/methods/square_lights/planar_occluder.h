@@ -19,6 +19,8 @@ class PlanarOccluder {
   /// Distance, in plane units at the pole of the disk (angle over root 2), of unit direction `c` from the polygon's outline as seen from
   /// `position`: positive outside, negative where the polygon hides c. kNoOccluder where it is seen edge on.
   float distance(const Vec3& position, const Vec3& c) const;
+  /// How far along unit `c` its plane is; infinite where it lies behind.
+  float along(const Vec3& position, const Vec3& c) const;
 
  private:
   std::vector<Vec3> corners_;  ///< counter-clockwise about normal_

@@ -36,6 +36,8 @@ struct SquareLightsSettings {
   bool area_penalty = true;
   bool paper_radius = false;
   float split = 0;
+  int patches = 16;
+  bool source_fields = false;
   int brdf_samples = 4;
 
   template <class Visitor>
@@ -79,6 +81,9 @@ struct SquareLightsSettings {
           {.help = "split squares at each vertex while the bound of their error is above this part of the light; 0: never",
            .minimum = 0,
            .maximum = 1});
+    visit("patches", &S::patches, {.help = "squares that a local light is cut into", .minimum = 1, .maximum = 256, .symbol = "n_p"});
+    visit("source_fields", &S::source_fields,
+          {.help = "local lights from tables around them, as the paper has them, instead of from the receiver's own place"});
     visit("brdf_samples", &S::brdf_samples, {.help = "points along an edge of a cell of the BRDF's tables", .minimum = 1, .maximum = 16});
   }
 };

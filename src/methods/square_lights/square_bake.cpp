@@ -7,6 +7,7 @@
 
 #include "base/core/error.h"
 #include "methods/square_lights/haar.h"
+#include "methods/square_lights/patch_coverage.h"
 #include "methods/square_lights/texel_visibility.h"
 #include "shade/material_eval.h"
 
@@ -14,7 +15,7 @@ namespace sightline::square_lights {
 namespace {
 
 // Versions of what is stored; to be raised whenever the same input would give other bytes.
-constexpr std::uint32_t kLightsVersion = 1, kSelfVersion = 1, kFieldVersion = 1, kMasksVersion = 1;
+constexpr std::uint32_t kLightsVersion = 1, kSelfVersion = 1, kFieldVersion = 1, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
 // Points along an edge of a texel when an environment becomes a cube map.
 constexpr int kCubePoints = 16;
 
@@ -57,6 +58,11 @@ void add_geometry(BakeHash& hash, const Scene& scene, const ShadingObject& objec
 
 void add_vertices(BakeHash& hash, const VertexSpans& v) {
   hash.add(v.position).add(v.normal).add(v.tangent).add(v.geometric_normal).add(v.error);
+}
+
+/// Without the slack that look-ups may read past the end: a bake has its own.
+std::span<const std::int8_t> whole_tables(const AlignedVector<std::int8_t>& tables) {
+  return std::span(tables).first(tables.size() / kTableCells * kTableCells);
 }
 
 /// What `make` says of a scene, said once a bake is really made.
@@ -133,6 +139,7 @@ SquareBake::SquareBake(const World& world, const SquareLightsSettings& settings,
   } else {
     make_tables(world, settings, store, context);
     make_occluders(world, settings, store, context);
+    make_sources(world, settings, store, context);
   }
 }
 
@@ -187,7 +194,7 @@ void SquareBake::make_tables(const World& world, const SquareLightsSettings& set
         const std::unique_ptr<Tracer> tracer = make_embree_tracer(alone, world.textures(), {}, context);
         const AlignedVector<std::int8_t> tables =
             bake_self_visibility(*tracer, vertices, {settings.rays, settings.count_horizon}, rays_, context);
-        const std::vector<BakeSection> sections{bake_section("tables", std::span<const std::int8_t>(tables))};
+        const std::vector<BakeSection> sections{bake_section("tables", whole_tables(tables))};
         keep(sections);
       });
     };
@@ -234,8 +241,7 @@ void SquareBake::make_occluders(const World& world, const SquareLightsSettings& 
         piece.center = sphere.center, piece.radius = sphere.radius;
       } else {
         const Mesh& mesh = world.scene().meshes[world.scene().instances[index].mesh.index];
-        for (const Vec3& p : mesh.positions)
-          points.push_back(transform_point(object.object_from_member[m], p)), bounds.add(points.back());
+        for (const Vec3& p : mesh.positions) points.push_back(transform_point(object.object_from_member[m], p)), bounds.add(points.back());
         for (const UVec3& t : mesh.triangles) area += 0.5f * glm::length(glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]));
         if (std::optional<PlanarOccluder> plane = PlanarOccluder::fit(points, area)) {
           planes_.push_back(std::move(*plane));
@@ -263,7 +269,7 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
       const Scene alone = object_scene(world.scene(), object);
       const std::unique_ptr<Tracer> tracer = make_embree_tracer(alone, world.textures(), {}, context);
       const AlignedVector<std::int8_t> tables = bake_occluder_field(*tracer, object.center, object.radius, options, rays_, context);
-      const std::vector<BakeSection> sections{bake_section("tables", std::span<const std::int8_t>(tables))};
+      const std::vector<BakeSection> sections{bake_section("tables", whole_tables(tables))};
       keep(sections);
     });
   };
@@ -286,7 +292,7 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
     bytes_ += occluder.compressed->bytes();
     // Deviation: look-ups want eight tables a point, far more than a vertex's one; they are expanded once, so that compression saves disk
     // and bakes' transport, not memory while a picture is made.
-    occluder.expanded.resize(kFieldTables * kTableCells + 64);
+    occluder.expanded.resize(kFieldTables * kTableCells + kTableSlack);
     for (std::size_t i = 0; i < kFieldTables; ++i)
       occluder.compressed->expand(i, std::span<std::int8_t, kTableCells>(occluder.expanded.data() + i * kTableCells, kTableCells));
     tables = std::span<const std::int8_t>(occluder.expanded).first(kFieldTables * kTableCells);
@@ -294,7 +300,53 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
   if (tables.size() != kFieldTables * kTableCells)
     throw input_error("square-lights: a stored occluder field has another size than expected");
   occluder.field = OccluderField(object.center, object.radius, shell_zoom(options), tables);
+  occluder.field.measure(context);
   occluders_.push_back(std::move(occluder));
+}
+
+void SquareBake::make_sources(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context) {
+  std::vector<LocalLight> lights = collect_local_lights(world.scene(), world.lights(), world.textures(), settings.patches);
+  source_patches_ = patch_count(lights);
+  if (lights.empty()) return;
+  // What stands still knows what it hides of each patch.
+  if (const ShadingObject& still = scene_.objects().front(); !still.moving && !still.deformable && still.count > 0) {
+    const VertexSpans vertices = scene_.vertices().spans(still);
+    BakeHash hash;
+    add_geometry(hash, world.scene(), still), add_vertices(hash, vertices);
+    for (const LocalLight& light : lights)
+      hash.add(light.patches()).add(light.center().x).add(light.center().y).add(light.center().z).add(light.radius()).add(light.count());
+    coverage_held_ = store.get({"square-lights.patch-coverage", kPatchVersion, hash.key()}, context, [&](const auto& keep) {
+      announce(context, fmt::format("{} patches of local lights from {} vertices", source_patches_, still.count),
+               still.count * source_patches_);
+      const std::unique_ptr<Tracer> tracer = make_embree_tracer(object_scene(world.scene(), still), world.textures(), {}, context);
+      const AlignedVector<std::uint8_t> coverage = trace_patches(*tracer, vertices, lights, rays_, context);
+      const std::vector<BakeSection> sections{bake_section("coverage", std::span<const std::uint8_t>(coverage))};
+      keep(sections);
+    });
+    coverage_ = coverage_held_->array<std::uint8_t>("coverage");
+    if (coverage_.size() != still.count * source_patches_) throw input_error("square-lights: a stored bake has another size than its mesh");
+    bytes_ += coverage_held_->bytes();
+  }
+  for (LocalLight& light : lights) {
+    Source& source = sources_.emplace_back();
+    source.light = std::move(light);
+    if (!settings.source_fields || source.light.is_sphere()) continue;
+    // The table is the emitter's own: where it stands does not matter.
+    source.origin = source.light.center();
+    Mat4 to_origin(1);
+    to_origin[3] = Vec4(-source.origin, 1);
+    const LocalLight own = source.light.transformed(to_origin);
+    BakeHash hash;
+    hash.add(own.patches());
+    source.held = store.get({"square-lights.source-field", kSourceVersion, hash.key()}, context, [&](const auto& keep) {
+      announce(context, "field of a local light", source_field_bytes(own));
+      const AlignedVector<PackedPatch> table = bake_source_field(own, context);
+      const std::vector<BakeSection> sections{bake_section("patches", std::span<const PackedPatch>(table))};
+      keep(sections);
+    });
+    source.field = SourceField(own.center(), own.radius(), own.count(), source.held->array<PackedPatch>("patches"));
+    bytes_ += source.held->bytes();
+  }
 }
 
 void SquareBake::make_materials(const World& world, const SquareLightsSettings& settings, const Context& context) {

@@ -11,11 +11,13 @@
 #include "methods/square_lights/brdf_table.h"
 #include "methods/square_lights/compressed_tables.h"
 #include "methods/square_lights/light_cube.h"
+#include "methods/square_lights/local_light.h"
 #include "methods/square_lights/merge_tree.h"
 #include "methods/square_lights/occluder_field.h"
 #include "methods/square_lights/planar_occluder.h"
 #include "methods/square_lights/settings.h"
 #include "methods/square_lights/shading_scene.h"
+#include "methods/square_lights/source_field.h"
 
 namespace sightline::square_lights {
 
@@ -45,6 +47,14 @@ struct Occluder {
   AlignedVector<std::int8_t> expanded;  ///< the field's bytes where they are stored compressed
 };
 
+/// A local light in world space, and its table where one is wanted.
+struct Source {
+  LocalLight light;
+  Vec3 origin{0};  ///< of the table's space
+  std::shared_ptr<const BakeView> held;
+  std::optional<SourceField> field;
+};
+
 class SquareBake final : public Bake {
  public:
   SquareBake(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
@@ -64,6 +74,10 @@ class SquareBake final : public Bake {
   Color table_albedo(std::uint32_t material) const { return bsdfs_[slot(material)].albedo(); }
   /// By vertex and texel of the cube map, which of 16 points are visible; only with lights=all or basis=haar.
   std::span<const std::uint16_t> texel_masks() const { return masks_; }
+  const std::vector<Source>& sources() const { return sources_; }
+  std::size_t source_patches() const { return source_patches_; }
+  /// Of the vertices of what stands still, which come first: visible part of each patch, 255 = all. Empty without sources or such vertices.
+  std::span<const std::uint8_t> patch_coverage() const { return coverage_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
@@ -74,6 +88,7 @@ class SquareBake final : public Bake {
   void add_occluder(const World& world, const ShadingObject& object, const Mat4& world_from_field, std::uint32_t index,
                     const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_materials(const World& world, const SquareLightsSettings& settings, const Context& context);
+  void make_sources(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_masks(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
 
   ShadingScene scene_;
@@ -87,6 +102,10 @@ class SquareBake final : public Bake {
   std::vector<Bsdf> bsdfs_;
   std::shared_ptr<const BakeView> masks_held_;
   std::span<const std::uint16_t> masks_;
+  std::vector<Source> sources_;
+  std::size_t source_patches_ = 0;
+  std::shared_ptr<const BakeView> coverage_held_;
+  std::span<const std::uint8_t> coverage_;
   RayCounts rays_;
   std::uint64_t bytes_ = 0;
 };
