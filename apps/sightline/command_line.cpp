@@ -85,7 +85,16 @@ void add_render_lights(CLI::App& app, RenderCommand& r) {
   app.add_option("--environment-rotate", r.lights.environment_rotate_deg, "turns it counter-clockwise about +Y")
       ->type_name("DEG")
       ->group(group);
-  app.add_option("--environment-mapping", r.lights.environment_mapping, "latlong, angular or octahedral")->type_name("NAME")->group(group);
+  app.add_option("--environment-mapping", r.lights.environment_mapping, "latlong, angular, octahedral or cube")
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--environment-turn", r.lights.environment_turn_deg, "turns it by so much more each frame")
+      ->type_name("DEG")
+      ->group(group);
+  app.add_option("--environment-cube", r.lights.environment_cube, "makes it a cube map of N x N texels a face, constant over each")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->group(group);
   app.add_option("--light-area", r.lights.area, "one-sided rectangle: \"X,Y,Z NX,NY,NZ WxH R,G,B\" (radiance); repeatable")
       ->type_name("TEXT")
       ->take_all()
@@ -107,15 +116,6 @@ void add_render_lights(CLI::App& app, RenderCommand& r) {
   app.add_flag("!--no-default-light", r.lights.default_light, "leave a scene without lights dark")->group(group);
 }
 
-void add_render_method(CLI::App& app, RenderCommand& r) {
-  const std::string group = "Method";
-  app.add_option("--method", r.render.method, "how the picture is formed (sightline methods lists them)")
-      ->type_name("NAME")
-      ->group(group)
-      ->capture_default_str();
-  app.add_option("--set", r.render.settings, "a setting of the method or visibility; repeatable")
-      ->type_name("KEY=VALUE")
-      ->take_all()
 /// The models with their parameters and defaults, one a line.
 std::string material_listing() {
   std::string text = "Models of --material, with defaults ('sightline info material:' explains them):";
@@ -137,6 +137,15 @@ void add_materials(CLI::App& app, std::vector<std::string>& materials) {
   app.footer(material_listing());
 }
 
+void add_render_method(CLI::App& app, RenderCommand& r) {
+  const std::string group = "Method";
+  app.add_option("--method", r.render.method, "how the picture is formed (sightline methods lists them)")
+      ->type_name("NAME")
+      ->group(group)
+      ->capture_default_str();
+  app.add_option("--set", r.render.settings, "a setting of the method or visibility; repeatable")
+      ->type_name("KEY=VALUE")
+      ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
       ->group(group);
@@ -258,6 +267,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   add_render_method(*render, line.render);
   add_render_view(*render, line.render);
   add_render_lights(*render, line.render);
+  add_materials(*render, line.render.materials);
   add_render_limits(*render, line.render);
 
   CLI::App* compare = app.add_subcommand("compare", "error metrics, difference images, an HTML report");
@@ -267,7 +277,6 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   compare->add_option("--html", line.compare.html, "a self-contained report")->type_name("FILE");
   compare->add_option("--difference", line.compare.difference, "false-colour FLIP error of the first image (.png)")->type_name("FILE");
   compare->add_flag("--mask", line.compare.mask, "leave out background and emitters (the reference's surface layer)");
-  add_materials(*render, line.render.materials);
   compare->add_option("--exposure", line.compare.exposure_ev, "stops before tone mapping, for psnr, ssim and flip")->type_name("EV");
   compare->add_option("--fail-over", line.compare.fail_over, "exit with 6 if a metric is worse than VALUE; repeatable")
       ->type_name("METRIC=VALUE")
@@ -289,6 +298,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   bake->add_option("SCENE", line.render.scenes, "scene files or builtin:NAME; several are merged")->required();
   add_render_method(*bake, line.render);
   add_render_lights(*bake, line.render);
+  add_materials(*bake, line.render.materials);
   add_optional(*bake, "--frame", line.render.frame, "animation frame (default 0)", "N");
   add_optional(*bake, "--memory-limit", line.render.memory_limit_gib, "refuse what would not fit", "GIB")->check(CLI::PositiveNumber);
   bake->add_flag("--json", line.render.bake_json, "what was found and made, as JSON");
@@ -298,7 +308,6 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
     bench->add_option(name, target, help)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
   };
-  add_materials(*bake, line.render.materials);
   add_list("--view", line.bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
   add_list("--part", line.bench.parts,
            "fragments: table, curve, sizes, interactive; visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)",

@@ -114,6 +114,7 @@ StopReason render_frame(const Sequence& sequence, int frame_number, const Stopwa
   Context& context = sequence.context;
   const Stopwatch build_watch;
   Scene scene = pose(sequence.loaded, static_cast<float>(frame_number) / command.fps);
+  turn_environment(scene, command.lights.environment_turn_deg * static_cast<float>(frame_number));
   WorldOptions options;
   if (command.tracer == "brute") options.backend = WorldOptions::Backend::brute;
   options.shadow_terminator = command.smooth_terminator;
@@ -198,10 +199,10 @@ int run_render(const CommandLine& line, Console& console, Context& context) {
 
   LoadOptions load_options;
   load_options.data_directory = line.common.data_directory;
-  Scene scene = load_scenes(command.scenes, load_options, context);
   const std::vector<MaterialRequest> materials = parse_materials(command.materials, load_options.data_directory);
-  apply_lights(scene, command.lights, context);
+  Scene scene = load_scenes(command.scenes, load_options, context);
   apply_materials(scene, materials);
+  apply_lights(scene, command.lights, context);
   const Sequence sequence{command, scene, start.seconds(), frames.first == frames.last, console, context, open_bakes(command)};
 
   std::shared_ptr<const World> world;

@@ -12,6 +12,7 @@
 #include "base/settings/settings.h"
 #include "image/io/image_io.h"
 #include "session/options_text.h"
+#include "shade/lights/cube_resample.h"
 
 namespace sightline {
 namespace {
@@ -20,7 +21,8 @@ EnvironmentMapping mapping_from_name(const std::string& name) {
   if (name == "latlong") return EnvironmentMapping::latlong;
   if (name == "angular") return EnvironmentMapping::angular;
   if (name == "octahedral") return EnvironmentMapping::octahedral;
-  throw usage_error(fmt::format("unknown environment mapping '{}'", name)).remedy("known: latlong, angular, octahedral");
+  if (name == "cube") return EnvironmentMapping::cube;
+  throw usage_error(fmt::format("unknown environment mapping '{}'", name)).remedy("known: latlong, angular, octahedral, cube");
 }
 
 // Names for a message of one line, not more of them than it can hold.
@@ -56,6 +58,12 @@ Environment load_environment(const std::string& path, const std::string& mapping
   return environment;
 }
 
+void turn_environment(Scene& scene, float degrees) {
+  if (!scene.environment || degrees == 0) return;
+  Mat3& world_from_environment = scene.environment->world_from_environment;
+  world_from_environment = Mat3(glm::rotate(Mat4(1), glm::radians(degrees), Vec3(0, 1, 0))) * world_from_environment;
+}
+
 bool has_light(const Scene& scene) {
   if (!scene.lights.empty() || scene.environment) return true;
   for (const Material& material : scene.materials) {
@@ -64,24 +72,34 @@ bool has_light(const Scene& scene) {
   return false;
 }
 
-void apply_lights(Scene& scene, const LightRequest& request, const Context& context) {
-  if (request.environment) {
-    scene.environment =
-        load_environment(*request.environment, request.environment_mapping, request.environment_scale, request.environment_rotate_deg);
-  } else if (scene.environment) {
-    scene.environment->scale *= request.environment_scale;
-    scene.environment->world_from_environment =
-        Mat3(glm::rotate(Mat4(1), glm::radians(request.environment_rotate_deg), Vec3(0, 1, 0))) * scene.environment->world_from_environment;
-  }
-  for (const std::string& text : request.area) scene.lights.push_back(parse_light_area(text));
-  for (const std::string& text : request.point) scene.lights.push_back(parse_light_point(text));
-  for (const std::string& text : request.directional) scene.lights.push_back(parse_light_directional(text));
+namespace {
+
+void add_default_light(Scene& scene, const LightRequest& request, const Context& context) {
   if (has_light(scene) || !request.default_light) return;
   const std::string warning =
       "the scene has no light: a uniform white environment of radiance 1 is added (--no-default-light leaves it dark)";
   scene.warnings.push_back(warning);
   context.warn(warning);
   scene.environment = Environment{.image = nullptr, .name = "default", .mapping = {}, .scale = Color(1), .world_from_environment = Mat3(1)};
+}
+
+}  // namespace
+
+void apply_lights(Scene& scene, const LightRequest& request, const Context& context) {
+  if (request.environment) {
+    scene.environment =
+        load_environment(*request.environment, request.environment_mapping, request.environment_scale, request.environment_rotate_deg);
+  } else if (scene.environment) {
+    scene.environment->scale *= request.environment_scale;
+    turn_environment(scene, request.environment_rotate_deg);
+  }
+  for (const std::string& text : request.area) scene.lights.push_back(parse_light_area(text));
+  for (const std::string& text : request.point) scene.lights.push_back(parse_light_point(text));
+  for (const std::string& text : request.directional) scene.lights.push_back(parse_light_directional(text));
+  add_default_light(scene, request, context);
+  if (request.environment_cube == 0) return;
+  if (!scene.environment) throw usage_error("--environment-cube: the scene has no environment").remedy("add one with --environment FILE");
+  scene.environment = environment_as_cube(*scene.environment, request.environment_cube, context);
 }
 
 Camera choose_camera(const Scene& scene, const ViewRequest& request) {

@@ -24,12 +24,16 @@ struct LightRequest {
   std::optional<std::string> environment;  ///< file
   float environment_scale = 1, environment_rotate_deg = 0;
   std::string environment_mapping = "latlong";
+  float environment_turn_deg = 0;  ///< added to the rotation for each frame of an animation
+  int environment_cube = 0;        ///< texels along an edge of the cube map that replaces the environment, 0 = it stays as it is
   std::vector<std::string> area, point, directional;  ///< option texts
   bool default_light = true;                          ///< a white environment where there is no light at all
 };
 
 /// Adds the lights asked for. A scene that then has none gets a uniform white environment and one warning, unless switched off.
 void apply_lights(Scene& scene, const LightRequest& request, const Context& context);
+/// Turns the scene's environment, if it has one, counter-clockwise about +Y seen from above.
+void turn_environment(Scene& scene, float degrees);
 /// True if anything in the scene emits.
 bool has_light(const Scene& scene);
 /// The camera asked for: by name, by eye and target, the scene's first, else framing. Throws Error{usage} naming the known cameras.

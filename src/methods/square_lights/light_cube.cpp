@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel/parallel.h"
+#include "shade/lights/cube_resample.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -52,29 +52,7 @@ Color LightCube::integral() const {
 LightCube make_light_cube(const std::function<Color(const Vec3&)>& radiance, int size, int points, const Context& context) {
   LightCube cube;
   cube.size = size;
-  const auto n = static_cast<std::size_t>(size);
-  cube.texels.resize(kCubeFaces * n * n);
-  const int fine = size * points;
-  parallel_for(context, kCubeFaces * n, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const int face = static_cast<int>(row / n), y = static_cast<int>(row % n);
-      for (int x = 0; x < size; ++x) {
-        glm::dvec3 sum(0);
-        double weights = 0;
-        for (int j = 0; j < points; ++j) {
-          for (int i = 0; i < points; ++i) {
-            const Vec3 d = cube_direction(face, cube_coordinate(x * points + i, fine), cube_coordinate(y * points + j, fine));
-            // Solid angles of equal parts of a face fall with the cube of the distance to it.
-            const float squared = length_squared(d), length = std::sqrt(squared);
-            const double weight = 1 / (static_cast<double>(squared) * length);
-            sum += weight * glm::dvec3(radiance(d / length));
-            weights += weight;
-          }
-        }
-        cube.texels[row * n + static_cast<std::size_t>(x)] = Color(sum / weights);
-      }
-    }
-  });
+  cube.texels = resample_to_cube(radiance, size, points, context);
   return cube;
 }
 

@@ -8,6 +8,7 @@
 #include "base/core/error.h"
 #include "base/parallel/parallel.h"
 #include "base/sample/warp.h"
+#include "shade/cube_map.h"
 
 namespace sightline {
 
@@ -33,7 +34,7 @@ void EnvironmentLight::build(const Context& context) {
   const int width = map_->width(), height = map_->height();
   // Whole pixels a cell, so that cells never cut through a texel.
   const auto cells = [&](int n) { return (static_cast<std::uint32_t>(n) + block_ - 1) / block_; };
-  while (static_cast<std::uint64_t>(cells(width)) * cells(height) > kMaxCells) ++block_;
+  while (!is_cube() && static_cast<std::uint64_t>(cells(width)) * cells(height) > kMaxCells) ++block_;
   columns_ = cells(width);
   rows_ = cells(height);
 
@@ -44,6 +45,7 @@ void EnvironmentLight::build(const Context& context) {
     if (mapping == EnvironmentMapping::latlong) return 2 * std::numbers::pi / width * (row_cosine(y) - row_cosine(y + 1));
     const double equal = 4 * std::numbers::pi / (static_cast<double>(width) * height);
     if (mapping == EnvironmentMapping::octahedral) return equal;
+    if (mapping == EnvironmentMapping::cube) return static_cast<double>(cube_texel_solid_angle(x, y % width, width));
     const double px = (2 * x + 1.0) / width - 1, py = (2 * y + 1.0) / height - 1;
     const double theta = std::numbers::pi * std::hypot(px, py);
     // A rim pixel whose centre lies outside the disk still shows something.
@@ -60,6 +62,13 @@ void EnvironmentLight::build(const Context& context) {
     for (std::size_t row = begin; row < end; ++row) {
       std::fill(weights.begin(), weights.end(), 0.f);
       for (int y = static_cast<int>(row * block_); y < std::min(static_cast<int>((row + 1) * block_), height); ++y) {
+        if (is_cube()) {
+          for (int x = 0; x < width; ++x) {
+            weights[static_cast<std::size_t>(x)] =
+                static_cast<float>(static_cast<double>(luminance(map_->texel(x, y))) * pixel_solid_angle(x, y));
+          }
+          continue;
+        }
         // Mean of the bilinear reconstruction over a pixel: it and its neighbours with weights 1/8, 3/4, 1/8 each way. So wherever
         // radiance is read as more than 0, the density is more than 0.
         const auto column_mean = [&](int x) {
@@ -125,6 +134,15 @@ Vec3 EnvironmentLight::sample(const Vec2& u) const {
     const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine));
     const float phi = 2 * kPi * (pu - 0.5f);
     local = {sine * std::sin(phi), cosine, -sine * std::cos(phi)};
+  } else if (is_cube()) {
+    // Uniform over the texel's square, but for a rim as wide as rounding: beyond it another texel may be dark.
+    const auto size = static_cast<std::uint32_t>(map_->width());
+    const float rim = std::min(5e-7f * static_cast<float>(size), 0.1f);
+    const auto coordinate = [&](std::uint32_t texel, float inside) {
+      return 2 * (static_cast<float>(texel) + std::clamp(inside, rim, 1 - rim)) / static_cast<float>(size) - 1;
+    };
+    local = glm::normalize(
+        cube_direction(static_cast<int>(row.index / size), coordinate(column.index, column.u), coordinate(row.index % size, row.u)));
   } else {
     local = environment_direction(map_->mapping(), {pu, between(row_border(row.index), row_border(row.index + 1), row.u)});
   }
@@ -134,14 +152,33 @@ Vec3 EnvironmentLight::sample(const Vec2& u) const {
 float EnvironmentLight::pdf(const Vec3& direction) const {
   if (!map_) return pdf_uniform_sphere();
   const Vec3 local = local_from_world_ * direction;
+  if (is_cube()) return cube_pdf(cube_cell(local), local);
   return pdf_at(environment_uv(map_->mapping(), local), local);
 }
 
 EnvironmentLight::Evaluation EnvironmentLight::evaluate(const Vec3& direction) const {
   if (!map_) return {scale_, pdf_uniform_sphere()};
   const Vec3 local = local_from_world_ * direction;
+  if (is_cube()) {
+    const Cell cell = cube_cell(local);
+    return {scale_ * map_->texel(static_cast<int>(cell.x), static_cast<int>(cell.y)), cube_pdf(cell, local)};
+  }
   const Vec2 uv = environment_uv(map_->mapping(), local);
   return {scale_ * map_->radiance_uv(uv), pdf_at(uv, local)};
+}
+
+EnvironmentLight::Cell EnvironmentLight::cube_cell(const Vec3& local) const {
+  const IVec2 texel = map_->cube_texel(local);
+  return {static_cast<std::uint32_t>(texel.x), static_cast<std::uint32_t>(texel.y)};
+}
+
+float EnvironmentLight::cube_pdf(Cell cell, const Vec3& local) const {
+  if (!row_table_.can_sample()) return 0;
+  const float probability = row_table_.probability(cell.y) * column_tables_[cell.y].probability(cell.x);
+  // Area on the face, whose edge is 2, to solid angle: the cube of the distance to the point on the face.
+  const auto size = static_cast<float>(map_->width());
+  const float height = max_component(glm::abs(local));
+  return probability * 0.25f * size * size / (height * height * height);
 }
 
 float EnvironmentLight::pdf_at(const Vec2& uv, const Vec3& local) const {
@@ -161,6 +198,8 @@ float EnvironmentLight::pdf_at(const Vec2& uv, const Vec3& local) const {
       const float stretch = theta > 1e-4f ? std::max(sine, 1e-6f) / theta : 1.f;
       return probability / (4 * kPi * kPi * stretch * width * height);
     }
+    case EnvironmentMapping::cube:
+      return cube_pdf(cell, local);
   }
   return 0;
 }

@@ -14,9 +14,9 @@
 
 namespace sightline {
 
-/// An Environment, ready: radiance by direction, and a sampler whose density is that of the radiance as it is read (bilinear), averaged
-/// over the cells of a grid. A row of cells is chosen by an alias table, then a cell in the row by another, then a point within: two
-/// small tables keep enough bits of the random numbers for the point, which one table of all cells would not.
+/// An Environment, ready: radiance by direction, and a sampler whose density is that of the radiance as it is read (bilinear; of a
+/// cube map constant), averaged over the cells of a grid. A row of cells is chosen by an alias table, then a cell in the row by another,
+/// then a point within: two small tables keep enough bits of the random numbers for the point, which one table of all cells would not.
 class EnvironmentLight {
  public:
   EnvironmentLight(const Environment& environment, const Context& context);
@@ -36,7 +36,7 @@ class EnvironmentLight {
   double total_luminance() const { return total_luminance_; }
   std::uint64_t memory_bytes() const;
 
-  /// Pictures with more pixels share cells: importance does not need their resolution.
+  /// Pictures with more pixels share cells: importance does not need their resolution. Texels of a cube map never do.
   static constexpr std::uint32_t kMaxCells = 1u << 21;
 
  private:
@@ -46,6 +46,9 @@ class EnvironmentLight {
   void build(const Context& context);
   Cell cell_of(const Vec2& uv) const;
   float pdf_at(const Vec2& uv, const Vec3& local) const;
+  bool is_cube() const { return map_->mapping() == EnvironmentMapping::cube; }
+  Cell cube_cell(const Vec3& local) const;
+  float cube_pdf(Cell cell, const Vec3& local) const;
   /// Borders of a cell in the unit square, lower then upper.
   float column_border(std::uint32_t column) const;
   float row_border(std::uint32_t row) const;

@@ -10,6 +10,7 @@
 
 #include "base/core/error.h"
 #include "image/tone_map.h"
+#include "shade/cube_map.h"
 
 namespace sightline {
 namespace {
@@ -81,6 +82,13 @@ Vec2 environment_uv(EnvironmentMapping mapping, const Vec3& d) {
     }
     case EnvironmentMapping::octahedral:
       return octahedral_uv(d);
+    case EnvironmentMapping::cube: {
+      // A border of a face must not round into the face below it.
+      constexpr float kInside = 1e-6f;
+      const CubePlace place = cube_place(d);
+      const float v = std::clamp(0.5f * (place.v + 1), kInside, 1 - kInside);
+      return {0.5f * (place.u + 1), (static_cast<float>(place.face) + v) / kCubeFaces};
+    }
   }
   return Vec2(0.5f);
 }
@@ -102,6 +110,11 @@ Vec3 environment_direction(EnvironmentMapping mapping, const Vec2& uv) {
     }
     case EnvironmentMapping::octahedral:
       return octahedral_direction(uv);
+    case EnvironmentMapping::cube: {
+      const float row = std::clamp(uv.y, 0.f, 1.f) * kCubeFaces;
+      const int face = std::min(static_cast<int>(row), kCubeFaces - 1);
+      return glm::normalize(cube_direction(face, 2 * uv.x - 1, 2 * (row - static_cast<float>(face)) - 1));
+    }
   }
   return Vec3(0);
 }
@@ -110,7 +123,19 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image, EnvironmentMa
     : image_(as_clean_floats(std::move(image), context)),
       mapping_(mapping),
       values_(std::get<Image::Floats>(image_->data).data()),
-      channels_(image_->channels) {}
+      channels_(image_->channels) {
+  if (mapping == EnvironmentMapping::cube && image_->height != kCubeFaces * image_->width) {
+    throw input_error(fmt::format("a picture of {} x {} pixels is no cube map: six square faces below one another are needed",
+                                  image_->width, image_->height));
+  }
+}
+
+IVec2 EnvironmentMap::cube_texel(const Vec3& direction) const {
+  const CubePlace place = cube_place(direction);
+  const int size = image_->width;
+  const auto index = [size](float u) { return std::clamp(static_cast<int>((u + 1) * 0.5f * static_cast<float>(size)), 0, size - 1); };
+  return {index(place.u), place.face * size + index(place.v)};
+}
 
 Color EnvironmentMap::texel(int x, int y) const {
   const int w = image_->width, h = image_->height;
@@ -136,6 +161,10 @@ Color EnvironmentMap::texel(int x, int y) const {
 }
 
 Color EnvironmentMap::radiance_uv(const Vec2& uv) const {
+  if (mapping_ == EnvironmentMapping::cube) {
+    const auto index = [](float u, int n) { return static_cast<int>(std::clamp(u, 0.f, 1.f) * static_cast<float>(n)); };
+    return texel(index(uv.x, image_->width), index(uv.y, image_->height));
+  }
   const float x = std::clamp(uv.x, 0.f, 1.f) * static_cast<float>(image_->width) - 0.5f;
   const float y = std::clamp(uv.y, 0.f, 1.f) * static_cast<float>(image_->height) - 0.5f;
   const float left = std::floor(x), top = std::floor(y);
