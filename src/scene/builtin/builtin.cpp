@@ -13,9 +13,9 @@ namespace {
 
 std::vector<BuiltinScene> make_table() {
   using namespace builtin;
-  return {cornell_scene(),   glass_scene(),     veach_like_scene(),        textured_scene(),   spheres_scene(), room_scene(),
-          open_room_scene(), ground_scene(),    hairball_scene(),          isosurface_scene(), plant_scene(),   furnace_scene(),
-          quad_scene(),      two_quads_scene(), lit_sphere_inside_scene(), half_plane_scene()};
+  return {cornell_scene(),   glass_scene(),   veach_like_scene(), textured_scene(),  spheres_scene(),           room_scene(),
+          open_room_scene(), ground_scene(),  movers_scene(),     pair_scene(),      hairball_scene(),          isosurface_scene(),
+          plant_scene(),     furnace_scene(), quad_scene(),       two_quads_scene(), lit_sphere_inside_scene(), half_plane_scene()};
 }
 
 const BuiltinScene& find_scene(std::string_view name) {

@@ -81,6 +81,30 @@ Mesh MeshBuilder::build(std::string name) const {
   return mesh;
 }
 
+Mesh ground_mesh(const Vec3& center, float edge, std::uint32_t side) {
+  std::vector<Vec3> positions;
+  std::vector<UVec3> triangles;
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      const float u = static_cast<float>(i) / static_cast<float>(side - 1) - 0.5f,
+                  v = static_cast<float>(j) / static_cast<float>(side - 1) - 0.5f;
+      positions.push_back(center + edge * Vec3(u, 0, v));
+    }
+  }
+  for (std::uint32_t j = 0; j + 1 < side; ++j) {
+    for (std::uint32_t i = 0; i + 1 < side; ++i) {
+      const std::uint32_t a = j * side + i, b = a + 1, c = a + side, d = c + 1;
+      triangles.insert(triangles.end(), {{a, c, b}, {b, c, d}});
+    }
+  }
+  Mesh mesh;
+  mesh.name = "ground";
+  mesh.positions = SharedArray<Vec3>(positions);
+  mesh.triangles = SharedArray<UVec3>(triangles);
+  for (const Vec3& p : positions) mesh.bounds.add(p);
+  return mesh;
+}
+
 MaterialId add_material(Scene& scene, std::string name, const SurfaceModel& model) {
   Material material;
   material.name = std::move(name);

@@ -31,6 +31,9 @@ class MeshBuilder {
   std::vector<UVec3> triangles_;
 };
 
+/// A horizontal square of `side` x `side` vertices that faces up.
+Mesh ground_mesh(const Vec3& center, float edge, std::uint32_t side);
+
 MaterialId add_material(Scene& scene, std::string name, const SurfaceModel& model);
 MaterialId add_diffuse(Scene& scene, std::string name, const Color& reflectance);
 /// Black, one-sided emitter.

@@ -131,31 +131,6 @@ struct GroundSettings {
   }
 };
 
-/// A square of 200 x 200 vertices over four bounding radii, centred below the content.
-Mesh ground_mesh(const Vec3& center, float edge) {
-  constexpr std::uint32_t kSide = 200;
-  std::vector<Vec3> positions;
-  std::vector<UVec3> triangles;
-  for (std::uint32_t j = 0; j < kSide; ++j) {
-    for (std::uint32_t i = 0; i < kSide; ++i) {
-      const float u = static_cast<float>(i) / (kSide - 1) - 0.5f, v = static_cast<float>(j) / (kSide - 1) - 0.5f;
-      positions.push_back(center + edge * Vec3(u, 0, v));
-    }
-  }
-  for (std::uint32_t j = 0; j + 1 < kSide; ++j) {
-    for (std::uint32_t i = 0; i + 1 < kSide; ++i) {
-      const std::uint32_t a = j * kSide + i, b = a + 1, c = a + kSide, d = c + 1;
-      triangles.insert(triangles.end(), {{a, c, b}, {b, c, d}});
-    }
-  }
-  Mesh mesh;
-  mesh.name = "ground";
-  mesh.positions = SharedArray<Vec3>(positions);
-  mesh.triangles = SharedArray<UVec3>(triangles);
-  for (const Vec3& p : positions) mesh.bounds.add(p);
-  return mesh;
-}
-
 /// Hangs all instances on a node that turns once about the vertical line through `center`, counter-clockwise seen from above.
 void add_spin(Scene& scene, const Vec3& center, float seconds) {
   if (!scene.spheres.empty()) throw usage_error("analytic spheres cannot turn").remedy("leave out spin=, or use content of triangles");
@@ -190,7 +165,7 @@ Scene build_ground(const GroundSettings& s, const LoadOptions& options, const Co
   const Vec3 center = bounds.center();
   const float radius = farthest_vertex(scene, center);
   if (s.spin > 0) add_spin(scene, center, s.spin);
-  add_mesh(scene, ground_mesh({center.x, bounds.lower.y, center.z}, 4 * radius), add_diffuse(scene, "ground", Color(0.5f)));
+  add_mesh(scene, ground_mesh({center.x, bounds.lower.y, center.z}, 4 * radius, 200), add_diffuse(scene, "ground", Color(0.5f)));
   scene.framing = bounds;
   scene.cameras.push_back(framing_camera(bounds));
   scene.hints.size_px = IVec2(800, 600);

@@ -21,5 +21,7 @@ BuiltinScene plant_scene();
 BuiltinScene room_scene();
 BuiltinScene open_room_scene();
 BuiltinScene ground_scene();
+BuiltinScene movers_scene();
+BuiltinScene pair_scene();
 
 }  // namespace sightline::builtin
