@@ -32,6 +32,13 @@ std::vector<BsdfCase> rough_cases() {
       {"coated diffuse, smooth", Bsdf(CoatedDiffuse(tan, 1.5f, Ggx()))},
       {"coated diffuse, rough", Bsdf(CoatedDiffuse(tan, 1.5f, Ggx(0.3f, 0.3f)))},
       {"coated diffuse, polished", Bsdf(CoatedDiffuse(tan, 1.8f, Ggx(0.05f, 0.05f))), true},
+      {"ward, broad", Bsdf(Ward(tan * 0.4f, Color(0.5f), 0.4f, 0.4f))},
+      {"ward, brushed", Bsdf(Ward(tan * 0.2f, Color(0.6f), 0.08f, 0.4f)), true},
+      {"ward, polished", Bsdf(Ward(Color(0), tan, 0.03f, 0.03f)), true},
+      {"cook-torrance, rough", Bsdf(CookTorrance(tan * 0.4f, Color(0.6f), 0.5f, Color(0.3f)))},
+      {"cook-torrance, metal", Bsdf(CookTorrance(Color(0), Color(1), 0.3f, Color(0.95f, 0.64f, 0.54f)))},
+      {"cook-torrance, polished", Bsdf(CookTorrance(tan * 0.5f, Color(0.5f), 0.05f, Color(0.04f))), true},
+      {"measured", Bsdf(MeasuredBrdf(measured_paint()))},
   };
 }
 
@@ -49,6 +56,23 @@ std::vector<BsdfCase> all_cases() {
   std::vector<BsdfCase> cases = rough_cases();
   for (const BsdfCase& c : delta_cases()) cases.push_back(c);
   return cases;
+}
+
+const MeasuredReflectance& measured_paint() {
+  static const MeasuredReflectance paint = [] {
+    std::vector<ReflectanceSample> samples;
+    for (int i = 0; i <= 8; ++i) {
+      for (int o = 0; o <= 8; ++o) {
+        for (int t = 0; t <= 12; ++t) {
+          const float theta_i = 0.19f * static_cast<float>(i), theta_o = 0.19f * static_cast<float>(o), turn = static_cast<float>(t) / 12;
+          const float gloss = std::exp(-20 * ((theta_i - theta_o) * (theta_i - theta_o) + 4 * (1 - turn) * (1 - turn)));
+          samples.push_back({theta_i, theta_o, kPi * turn, Color(0.05f, 0.1f, 0.2f) + 0.3f * gloss});
+        }
+      }
+    }
+    return MeasuredReflectance(samples);
+  }();
+  return paint;
 }
 
 Vec3 direction_at(float cos_theta, float phi) {

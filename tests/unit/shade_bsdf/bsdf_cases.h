@@ -25,4 +25,7 @@ std::vector<Vec3> outgoing_directions();
 
 Vec3 direction_at(float cos_theta, float phi);
 
+/// A blue paint with a gloss, as if it had been measured.
+const MeasuredReflectance& measured_paint();
+
 }  // namespace sightline::test

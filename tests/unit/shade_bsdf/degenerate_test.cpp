@@ -34,12 +34,17 @@ std::vector<BsdfCase> evil_cases() {
     }
     for (const float metallic : {0.f, 1.f})
       cases.push_back({name("metallic", alpha, metallic), Bsdf(MetallicRoughness(Color(1, 0, 0.5f), metallic, std::sqrt(alpha)))});
+    cases.push_back({name("ward", alpha, 1), Bsdf(Ward(Color(0.5f), Color(0.5f), alpha, 1))});
+    cases.push_back({name("cook-torrance", alpha, 0), Bsdf(CookTorrance(Color(0), Color(1), alpha, Color(0)))});
+    cases.push_back({name("cook-torrance", alpha, 1), Bsdf(CookTorrance(Color(0.5f), Color(0.5f), alpha, Color(1)))});
     cases.push_back({name("conductor", alpha, 0), Bsdf(Conductor(Color(0), Color(0), Color(1), Ggx(alpha, alpha)))});
     cases.push_back({name("conductor", alpha, 1), Bsdf(Conductor(Color(0.2f), Color(4), Color(1), Ggx(alpha, 1)))});
   }
   cases.push_back({"black lambert", Bsdf(Lambert{Color(0)})});
   cases.push_back({"black phong", Bsdf(Phong(Color(0), Color(0), 0))});
   cases.push_back({"sharp phong", Bsdf(Phong(Color(0), Color(1), 1e9f))});
+  cases.push_back({"black ward", Bsdf(Ward(Color(0), Color(0), 0, 9))});
+  cases.push_back({"black cook-torrance", Bsdf(CookTorrance(Color(0), Color(0), 0, Color(0)))});
   cases.push_back({"black transmission", Bsdf(DiffuseTransmission(Color(0), Color(0)))});
   cases.push_back({"black coated", Bsdf(CoatedDiffuse(Color(0), 1, Ggx()))});
   cases.push_back({"black metallic", Bsdf(MetallicRoughness(Color(0), 1, 0))});

@@ -59,6 +59,13 @@ TEST(Furnace, NothingReturnsMoreThanItReceives) {
     cases.push_back({"white paint " + std::to_string(alpha), Bsdf(MetallicRoughness(Color(1), 0, std::sqrt(alpha)))});
     cases.push_back({"white half metal " + std::to_string(alpha), Bsdf(MetallicRoughness(Color(1), 0.5f, std::sqrt(alpha)))});
   }
+  for (const float alpha : {0.01f, 0.1f, 0.5f, 2.f}) {
+    cases.push_back({"white ward " + std::to_string(alpha), Bsdf(Ward(Color(0), Color(1), alpha, alpha))});
+    cases.push_back({"white brushed ward " + std::to_string(alpha), Bsdf(Ward(Color(0), Color(1), alpha, 0.1f))});
+    cases.push_back({"white cook-torrance " + std::to_string(alpha), Bsdf(CookTorrance(Color(0), Color(1), alpha, Color(1)))});
+  }
+  cases.push_back({"too much ward", Bsdf(Ward(Color(0.9f), Color(0.8f), 0.3f, 0.2f))});
+  cases.push_back({"too much cook-torrance", Bsdf(CookTorrance(Color(0.9f), Color(0.8f), 0.3f, Color(0.5f)))});
   cases.push_back({"too much phong", Bsdf(Phong(Color(0.9f), Color(0.8f), 20))});
   cases.push_back({"too much transmission", Bsdf(DiffuseTransmission(Color(0.9f), Color(0.8f)))});
   for (const BsdfCase& c : cases) {

@@ -64,6 +64,13 @@ TEST(MaterialEval, EachModelBecomesItsBsdf) {
   EXPECT_TRUE(std::holds_alternative<CoatedDiffuse>(made(CoatedDiffuseMaterial{})));
   EXPECT_TRUE(std::holds_alternative<Phong>(made(PhongMaterial{})));
   EXPECT_TRUE(std::holds_alternative<DiffuseTransmission>(made(DiffuseTransmissionMaterial{})));
+  EXPECT_TRUE(std::holds_alternative<Ward>(made(WardMaterial{})));
+  EXPECT_TRUE(std::holds_alternative<CookTorrance>(made(CookTorranceMaterial{})));
+  EXPECT_TRUE(std::holds_alternative<Lambert>(made(MeasuredMaterial{})));
+  const ReflectanceSample sample{.value = Color(0.1f)};
+  MeasuredMaterial measured;
+  measured.data = std::make_shared<const MeasuredReflectance>(std::span(&sample, 1));
+  EXPECT_TRUE(std::holds_alternative<MeasuredBrdf>(made(measured)));
 }
 
 TEST(MaterialEval, InterfacesLetLightPassStraight) {
@@ -102,7 +109,9 @@ TEST(MaterialEval, ParametersBeyondTheirRangeAreTakenBackIntoIt) {
                                    DielectricMaterial{bad, bad, bad, true, false},
                                    CoatedDiffuseMaterial{bad, bad, bad, bad, true},
                                    PhongMaterial{bad, bad, bad},
-                                   DiffuseTransmissionMaterial{bad, bad}};
+                                   DiffuseTransmissionMaterial{bad, bad},
+                                   WardMaterial{bad, bad, bad, bad},
+                                   CookTorranceMaterial{bad, bad, bad, bad}};
     for (const SurfaceModel& model : models) {
       const Bsdf bsdf = make_bsdf(scene, TextureSet(), add(scene, model), kMiddle, 0.5f);
       Uniform random(1);
