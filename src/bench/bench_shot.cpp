@@ -33,7 +33,7 @@ std::optional<BuiltView> load_built_view(const std::string& name, const std::fil
 
 Shot shoot(const BuiltView& view, const RenderRequest& request, const Context& context) {
   const RenderResult result = render_view(view, request, context);
-  return {result.frame.color_image(), result.seconds.render, result.statistics};
+  return {result.frame.color_image(), result.seconds.render, result.statistics, result.seconds.prepare};
 }
 
 std::vector<Shot> shoot_by_turns(std::size_t count, int rounds, const std::function<Shot(std::size_t)>& picture) {

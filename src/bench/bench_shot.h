@@ -26,11 +26,12 @@ struct BuiltView {
 std::optional<BuiltView> load_built_view(const std::string& name, const std::filesystem::path& data, std::optional<IVec2> size_px,
                                          bool quick, const Context& context);
 
-/// A finished picture; its time is that of the whole frame.
+/// A finished picture; its time is that of its passes.
 struct Shot {
   ColorImage image;
   double seconds = 0;
   PassStatistics statistics;
+  double prepare_seconds = 0;  ///< before the first pass: bakes found or made
 };
 /// Throws Error{interrupted} instead of returning a picture that is not complete.
 Shot shoot(const BuiltView& view, const RenderRequest& request, const Context& context);

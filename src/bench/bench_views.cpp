@@ -85,6 +85,10 @@ std::vector<ViewInfo> sky_views() {
       add(content.name, fmt::format("builtin:ground,content={}{}", content.file, content.parameters), light, content.file);
   }
   for (const SkyLight& light : {kSkyLights[0], kSkyLights[1]}) add("pair", "builtin:pair", light, nullptr);
+  // A skin that bends: as the file has it, without ground.
+  constexpr const char* kMan = "gltf/CesiumMan/CesiumMan.glb";
+  add("man", kMan, kSkyLights[0], kMan);
+  views.back().own_materials = true;
   add("movers-5", "builtin:movers,parts=5,vertices=80000", kSkyLights[0], nullptr);
   add("movers-12", "builtin:movers,parts=12,vertices=60000", kSkyLights[0], nullptr);
   return views;
