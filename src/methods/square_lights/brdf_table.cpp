@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <variant>
 
 #include "base/parallel/parallel.h"
@@ -206,50 +205,27 @@ bool is_read(int x, int y) {
   return nx * nx + ny * ny < 1;
 }
 
-/// Whether f cos stays what it is when both directions are taken through each of `maps`; directions that the BSDF itself chooses find
-/// narrow lobes.
-bool is_unchanged(const Bsdf& bsdf, std::span<const Mat3> maps) {
+/// Whether f cos stays what it is when both directions are mirrored at the planes of the axes, as all models do whose axes are the
+/// tangents: views of one quadrant then do for all four. Directions that the BSDF itself chooses find narrow lobes.
+bool is_mirror_symmetric(const Bsdf& bsdf) {
   for (int i = 0; i < 48; ++i) {
     const float cosine = 0.15f + 0.84f * kronecker(i, 0.6180339887), sine = std::sqrt(1 - cosine * cosine), angle = static_cast<float>(i);
     const Vec3 wo{sine * std::cos(angle), sine * std::sin(angle), cosine};
     const std::optional<BsdfSample> sample = sample_some(bsdf, wo, i);
     if (!sample) continue;
     const Color here = bsdf.evaluate(wo, sample->wi).f_cos;
-    for (const Mat3& map : maps) {
-      const Color there = bsdf.evaluate(map * wo, map * sample->wi).f_cos;
+    for (const Vec3& mirror : {Vec3(-1, 1, 1), Vec3(1, -1, 1)}) {
+      const Color there = bsdf.evaluate(mirror * wo, mirror * sample->wi).f_cos;
       if (!(max_component(glm::abs(here - there)) <= 0.01f * max_component(glm::max(here, there)))) return false;
     }
   }
   return true;
 }
 
-bool looks_isotropic(const Bsdf& bsdf) {
-  std::array<Mat3, 3> turns;
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    const float angle = 0.5f + static_cast<float>(i) * 0.6f, c = std::cos(angle), s = std::sin(angle);
-    turns[i] = Mat3(Vec3(c, s, 0), Vec3(-s, c, 0), Vec3(0, 0, 1));
-  }
-  return is_unchanged(bsdf, turns);
-}
-
-/// As all models are whose axes are the tangents: views of one quadrant then do for all four.
-bool is_mirror_symmetric(const Bsdf& bsdf) {
-  const std::array<Mat3, 2> mirrors{Mat3(Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)), Mat3(Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1))};
-  return is_unchanged(bsdf, mirrors);
-}
-
 }  // namespace
 
 bool is_isotropic(const Bsdf& bsdf) {
-  return std::visit(
-      [&bsdf](const auto& model) {
-        if constexpr (requires { model.is_isotropic(); }) {
-          return static_cast<bool>(model.is_isotropic());
-        } else {
-          return looks_isotropic(bsdf);
-        }
-      },
-      bsdf.model());
+  return std::visit([](const auto& model) { return model.is_isotropic(); }, bsdf.model());
 }
 
 BrdfTable BrdfTable::build(const Bsdf& bsdf, int samples, const Context& context) {
@@ -317,7 +293,7 @@ BrdfTable::Slices BrdfTable::slices(const Vec3& wo) const {
 
 Vec4 BrdfTable::mean_of_four(const Slices& slices, const Vec2& p, float r_p) {
   const Vec2 turned{slices.turn.x * p.x - slices.turn.y * p.y, slices.turn.y * p.x + slices.turn.x * p.y};
-  const float half = r_p * 0.70710678f;
+  const float half = std::max(r_p * 0.70710678f, kLeastHalf);
   const auto place = [](float v) { return std::clamp((v + 1) / kCellSize, 0.f, static_cast<float>(kCells)); };
   const float x[2] = {place(turned.x - half), place(turned.x + half)}, y[2] = {place(turned.y - half), place(turned.y + half)};
   Vec4 sum(0);
@@ -334,7 +310,7 @@ Vec4 BrdfTable::mean_of_four(const Slices& slices, const Vec2& p, float r_p) {
     sum += slices.weight[s] * (corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0]));
   }
   // Differences of corners may leave a trace of rounding below 0.
-  return glm::max(sum / std::max(2 * r_p * r_p, 1e-12f), Vec4(0));
+  return glm::max(sum / (4 * half * half), Vec4(0));
 }
 
 Color BrdfTable::mean(const Slices& slices, const Vec2& p, float r_p) const { return Color(mean_of_four(slices, p, r_p)); }

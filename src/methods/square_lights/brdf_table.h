@@ -17,6 +17,9 @@ namespace sightline::square_lights {
 class BrdfTable {
  public:
   static constexpr int kCells = 32, kCorners = 33, kViews = 32;
+  /// Half edge of the smallest square that is looked up, half a cell: smaller ones would step from cell to cell, and drown in the rounding
+  /// of sums. This one reads cells bilinearly.
+  static constexpr float kLeastHalf = 1.f / kCells;
   static constexpr std::size_t kSliceFloats = std::size_t{kCorners} * kCorners * 4;
 
   /// Tables of `bsdf`: by view angle alone (32 of them over [0, pi/2]) where it looks the same turned about the normal, else for 32 x 32
@@ -39,7 +42,8 @@ class BrdfTable {
   };
   Slices slices(const Vec3& wo) const;
   /// Mean over the square of half diagonal `r_p` around `p` (not yet turned), of f cos as radiance per radiance and steradian: the integral
-  /// over the square, which may leave the disk, by 2 r_p². The scalar definition of what the lanes do.
+  /// over the square, which may leave the disk, by 2 r_p²; of squares below kLeastHalf that of the least one. The scalar definition of what
+  /// the lanes do.
   Color mean(const Slices& slices, const Vec2& p, float r_p) const;
   /// Mean and deviation of the luminance of f cos over the same square (between cells; third moments are not known and stay 0), for error
   /// bounds. Of two or four slices the deviation is the greatest that fits them.

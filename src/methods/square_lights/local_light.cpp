@@ -195,11 +195,15 @@ LocalLight LocalLight::pieces(std::span<const AreaPatch> pieces, int patches) {
   std::erase_if(all, [](const AreaPatch& p) { return !(p.area() > 0) || !std::isfinite(p.area()); });
   if (all.size() <= wanted) {
     // The largest is halved until there are enough.
+    const auto smaller = [](const AreaPatch& a, const AreaPatch& b) { return a.area() < b.area(); };
+    std::make_heap(all.begin(), all.end(), smaller);
     while (!all.empty() && all.size() < wanted) {
-      const auto largest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.area() < b.area(); });
-      const std::array<AreaPatch, 2> parts = halves(*largest);
-      *largest = parts[0];
+      std::pop_heap(all.begin(), all.end(), smaller);
+      const std::array<AreaPatch, 2> parts = halves(all.back());
+      all.back() = parts[0];
+      std::push_heap(all.begin(), all.end(), smaller);
       all.push_back(parts[1]);
+      std::push_heap(all.begin(), all.end(), smaller);
     }
     result.patches_ = std::move(all);
     result.bound();
@@ -259,10 +263,16 @@ void LocalLight::lights_at(const Vec3& position, std::span<PatchLight> lights) c
   const auto edge = static_cast<float>(sphere_edge_);
   const float radius = std::sqrt(kPi * height) / edge;
   for (std::size_t i = 0; i < count(); ++i) {
-    const Vec2 p = sample_concentric_disk(
-        {(static_cast<float>(i % sphere_edge_) + 0.5f) / edge, (static_cast<float>(i / sphere_edge_) + 0.5f) / edge});
-    const float drop = glm::dot(p, p) * height, k = std::sqrt(height * (2 - drop));
-    lights[i] = {{frame.to_world({p.x * k, p.y * k, 1 - drop}), radius, sphere_radiance_}, std::max(distance - radius_, 0.f)};
+    // Mean direction of the part, from its quarters.
+    Vec3 mean(0);
+    for (int q = 0; q < 4; ++q) {
+      const Vec2 p = sample_concentric_disk({(static_cast<float>(i % sphere_edge_) + 0.25f + 0.5f * static_cast<float>(q % 2)) / edge,
+                                             (static_cast<float>(i / sphere_edge_) + 0.25f + 0.5f * static_cast<float>(q / 2)) / edge});
+      const float drop = glm::dot(p, p) * height, k = std::sqrt(height * (2 - drop));
+      mean += Vec3(p.x * k, p.y * k, 1 - drop);
+    }
+    const Vec3 direction = sphere_edge_ == 1 ? frame.normal : frame.to_world(glm::normalize(mean));
+    lights[i] = {{direction, radius, sphere_radiance_}, std::max(distance - radius_, 0.f)};
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -135,11 +136,8 @@ class FaceMerger {
   void merge(const Pair& pair) {
     const auto id = static_cast<std::uint32_t>(nodes_.size());
     Region &a = regions_[pair.a], &b = regions_[pair.b], &merged = regions_[id];
-    // The smaller list goes behind the larger.
-    const bool swap = a.texels.size() < b.texels.size();
-    merged.texels = std::move(swap ? b.texels : a.texels);
-    const std::vector<std::uint32_t>& tail = swap ? a.texels : b.texels;
-    merged.texels.insert(merged.texels.end(), tail.begin(), tail.end());
+    // In order, so that sums over a region do not depend on how it came about.
+    std::merge(a.texels.begin(), a.texels.end(), b.texels.begin(), b.texels.end(), std::back_inserter(merged.texels));
     std::sort(a.neighbours.begin(), a.neighbours.end());
     std::sort(b.neighbours.begin(), b.neighbours.end());
     std::set_union(a.neighbours.begin(), a.neighbours.end(), b.neighbours.begin(), b.neighbours.end(),

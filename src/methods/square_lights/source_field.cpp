@@ -17,10 +17,11 @@ float source_radius(std::size_t k) {
   return kInnerSource * std::pow(kOuterSource / kInnerSource, static_cast<float>(k) / (kSourceShells - 1));
 }
 
+/// Points lie on the edges of faces too, so that neither face needs the other's.
 Vec3 point_direction(std::size_t point) {
-  const int face = static_cast<int>(point / (kSourceSize * kSourceSize)), x = static_cast<int>(point % kSourceSize),
-            y = static_cast<int>(point / kSourceSize % kSourceSize);
-  return glm::normalize(cube_direction(face, cube_coordinate(x, kSourceSize), cube_coordinate(y, kSourceSize)));
+  const auto coordinate = [](std::size_t i) { return 2 * static_cast<float>(i) / (kSourceSize - 1) - 1; };
+  const std::size_t x = point % kSourceSize, y = point / kSourceSize % kSourceSize, face = point / (kSourceSize * kSourceSize);
+  return glm::normalize(cube_direction(static_cast<int>(face), coordinate(x), coordinate(y)));
 }
 
 /// The octahedron folded onto the square [-1, 1]², 16 bits a coordinate.
@@ -56,7 +57,7 @@ Color unpack_radiance(std::uint32_t code) {
   return Color(static_cast<float>(code & 511u), static_cast<float>(code >> 9 & 511u), static_cast<float>(code >> 18 & 511u)) * scale;
 }
 
-/// Four points of a shell around a direction and their weights; beyond the edge of a face its neighbour's texels are taken.
+/// Four points of a shell around a direction and their weights.
 struct ShellPlace {
   std::array<std::size_t, 4> point;
   std::array<float, 4> weight;
@@ -64,21 +65,13 @@ struct ShellPlace {
 
 ShellPlace place_on_shell(const Vec3& direction) {
   const CubePlace at = cube_place(direction);
-  const float x = (at.u + 1) * (0.5f * kSourceSize) - 0.5f, y = (at.v + 1) * (0.5f * kSourceSize) - 0.5f;
-  const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
-  const auto texel = [&at](int i, int j) {
-    int face = at.face;
-    const bool outside = std::min(i, j) < 0 || std::max(i, j) >= kSourceSize;
-    if (outside) {
-      const CubePlace there = cube_place(cube_direction(face, cube_coordinate(i, kSourceSize), cube_coordinate(j, kSourceSize)));
-      const auto index = [](float u) { return std::clamp(static_cast<int>((u + 1) * (0.5f * kSourceSize)), 0, kSourceSize - 1); };
-      face = there.face, i = index(there.u), j = index(there.v);
-    }
-    return (static_cast<std::size_t>(face) * kSourceSize + static_cast<std::size_t>(j)) * kSourceSize + static_cast<std::size_t>(i);
-  };
-  const int i = static_cast<int>(x0), j = static_cast<int>(y0);
-  return {{texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1)},
-          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+  const float x = std::clamp((at.u + 1) * 0.5f, 0.f, 1.f) * (kSourceSize - 1),
+              y = std::clamp((at.v + 1) * 0.5f, 0.f, 1.f) * (kSourceSize - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(x), std::size_t{kSourceSize - 2});
+  const std::size_t j = std::min(static_cast<std::size_t>(y), std::size_t{kSourceSize - 2});
+  const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
+  const std::size_t first = (static_cast<std::size_t>(at.face) * kSourceSize + j) * kSourceSize + i;
+  return {{first, first + 1, first + kSourceSize, first + kSourceSize + 1}, {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
 }  // namespace
