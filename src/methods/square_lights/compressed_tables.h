@@ -1,8 +1,8 @@
 // Distance tables as a few numbers each: clustered principal components.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,9 +12,13 @@
 
 namespace sightline::square_lights {
 
+struct TableClusters;
+
+inline constexpr std::size_t kMostVectors = 64;
+
 struct CompressionOptions {
   int clusters = 256;
-  int vectors = 8;  ///< n': eigenvectors a cluster
+  int vectors = 8;  ///< n': eigenvectors a cluster; at most kMostVectors
   int iterations = 4;
   std::uint64_t seed = 0;
 };
@@ -41,10 +45,14 @@ class CompressedTables {
   std::span<const std::uint16_t> cluster_of() const { return cluster_; }
   std::span<const std::uint16_t> weights() const { return weights_; }        ///< [table][vector], binary16
   std::span<const std::uint16_t> components() const { return components_; }  ///< [cluster][1 + vectors][cell], binary16
+  /// Throws Error{input} where they do not fit each other.
   static CompressedTables from_arrays(std::span<const std::uint16_t> cluster, std::span<const std::uint16_t> weights,
                                       std::span<const std::uint16_t> components, int vectors);
 
  private:
+  static CompressedTables store(std::span<const std::int8_t> tables, const TableClusters& clusters, std::size_t vectors,
+                                const Context& context);
+
   int vectors_ = 0;
   std::vector<std::uint16_t> cluster_;
   AlignedVector<std::uint16_t> weights_, components_;
