@@ -89,6 +89,10 @@ bool Frame::add_exactly(Aov aov, const PixelBlock& block) {
   std::vector<ExactSum>& sums = sums_[static_cast<std::size_t>(aov)];
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     if (!block.inside[lane]) continue;
+    // Black pixels are many, and their sums need not be touched.
+    std::int64_t any = 0;
+    for (std::size_t c = 0; c < channels; ++c) any |= block_sums[c][lane];
+    if (any == 0) continue;
     for (std::size_t c = 0; c < channels; ++c)
       sums[channels * block.pixel[lane] + c].value += Int128(block_sums[c][lane]) * (Int128(1) << (64 - kBlockSumBits));
   }

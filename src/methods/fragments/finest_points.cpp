@@ -20,6 +20,7 @@ void FinestPoints::make(const LightTable& lights, const AreaLight& light, std::u
   if (light_ == &light && sample_ == sample && count_ == count) return;
   light_ = &light, sample_ = sample, count_ = count;
   sets_ = std::clamp(kPoints / count, kLeastSets, kMostSets);
+  uniform_ = light.members.size() == 1 && light.analytic;
   const std::size_t total = std::size_t{sets_} * count;
   queries.resize_lights(total + kLanes), radiance.resize(total + kLanes);
   for (auto* numbers : {&area, &power, &two_sided}) numbers->resize(padded(total) + kLanes);

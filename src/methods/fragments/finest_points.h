@@ -18,6 +18,8 @@ class FinestPoints {
   /// Sets of `count` points of `light` for picture sample `sample`, as the light ends of `queries`; nothing to do if they are there
   /// already.
   void make(const LightTable& lights, const AreaLight& light, std::uint32_t sample, std::uint32_t count, QueryBatch& queries);
+  /// All points have the same normal, power and sides: those of the first stand for all.
+  bool uniform() const { return uniform_; }
   /// Element of the set's first point.
   std::size_t first(std::uint32_t pixel) const { return std::size_t{hash_of(pixel) % sets_} * count_; }
 
@@ -32,6 +34,7 @@ class FinestPoints {
   std::uint64_t seed_;
   const AreaLight* light_ = nullptr;
   std::uint32_t sample_ = 0, count_ = 0, sets_ = 1;
+  bool uniform_ = false;
   Vec3Batch front_;
   AlignedVector<std::uint32_t> key_, index_, entry_;
   AlignedVector<float> u0_, u1_, selection_;

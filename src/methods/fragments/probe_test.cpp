@@ -1,6 +1,8 @@
 #include "methods/fragments/probe_test.h"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 
 #include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
@@ -88,46 +90,75 @@ void ProbeTest::ask(PassStatistics& statistics) {
   worker_->visible(queries_, weights_, statistics.rays, statistics.visibility);
 }
 
-void ProbeTest::count_questions(std::size_t fragments, std::size_t questions_each) {
-  for (std::size_t i = 0; i < fragments; ++i) {
-    const std::uint32_t* first = queries_.light_of.data() + i * questions_each;
-    const auto left_out = std::count(first, first + questions_each, kNoQuery);
-    asked_.push_back(static_cast<std::uint32_t>(questions_each) - static_cast<std::uint32_t>(left_out));
-  }
+void ProbeTest::count_questions(std::size_t fragment, std::size_t first, std::size_t count) {
+  const std::uint32_t* light = queries_.light_of.data() + first;
+  asked_[fragment] += static_cast<std::uint32_t>(count) - static_cast<std::uint32_t>(std::count(light, light + count, kNoQuery));
 }
 
 void ProbeTest::test(const GBuffer& g, std::span<const Fragment> fragments, std::vector<ProbeMasks>& masks, PassStatistics& statistics) {
+  masks.assign(fragments.size(), {});
+  asked_.assign(fragments.size(), 0);
+  open_.resize(fragments.size());
+  std::iota(open_.begin(), open_.end(), 0u);
+  const std::uint64_t all = points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1;
+  if (!sparse_) return ask_some(g, fragments, open_, {all, all, all, all}, masks, statistics);
+
+  // Small fragments ask each point once first, a quarter of them in each quadrant: most see all or nothing of the light.
+  ProbeMasks some{}, rest;
+  for (std::uint32_t k = 0; k < points_->count; ++k)
+    some[static_cast<std::size_t>(sub_probe_of(k, points_->count))] |= std::uint64_t{1} << k;
+  for (std::size_t q = 0; q < 4; ++q) rest[q] = all & ~some[q];
+  const auto small = [&](std::uint32_t i) { return fragments[i].level <= kSparseLevel; };
+  const auto first_small = std::stable_partition(open_.begin(), open_.end(), [&](std::uint32_t i) { return !small(i); });
+  small_.assign(first_small, open_.end());
+  open_.erase(first_small, open_.end());
+  ask_some(g, fragments, open_, {all, all, all, all}, masks, statistics);
+  ask_some(g, fragments, small_, some, masks, statistics);
+  std::erase_if(small_, [&](std::uint32_t i) {
+    ProbeMasks& m = masks[i];
+    const bool lit = m == some;
+    if (lit) m = {all, all, all, all};
+    return lit || (m[0] | m[1] | m[2] | m[3]) == 0;
+  });
+  ask_some(g, fragments, small_, rest, masks, statistics);
+}
+
+// Asks in quadrant q of each listed fragment the points of some[q], and adds what is seen to its masks.
+void ProbeTest::ask_some(const GBuffer& g, std::span<const Fragment> fragments, std::span<const std::uint32_t> which,
+                         const ProbeMasks& some, std::vector<ProbeMasks>& masks, PassStatistics& statistics) {
   const std::uint32_t rays = points_->count;
-  masks.resize(fragments.size());
-  asked_.clear();
-  for (std::size_t first = 0; first < fragments.size(); first += kFragments) {
-    const std::span some = fragments.subspan(first, std::min(kFragments, fragments.size() - first));
-    queries_.eye.resize(16 * some.size());
+  const std::size_t most = 4 * static_cast<std::size_t>(rays);
+  for (std::size_t first = 0; first < which.size(); first += kFragments) {
+    const std::span chunk = which.subspan(first, std::min(kFragments, which.size() - first));
+    queries_.eye.resize(16 * chunk.size());
     queries_.eye.size = 0;
-    queries_.resize_queries(4 * static_cast<std::size_t>(rays) * some.size());
+    queries_.resize_queries(most * chunk.size());
     std::size_t query = 0;
-    for (const Fragment& f : some) {
+    for (const std::uint32_t i : chunk) {
+      const Fragment& f = fragments[i];
       const std::uint32_t light = set_of(f) * rays;
+      const std::size_t before = query;
       for (int q = 0; q < 4; ++q) {
         const auto eye = static_cast<std::uint32_t>(queries_.eye.size);
-        if (f.level < kManyProbesLevel) {
-          add_eye(g, probe_pixel(g, f, q));
-          for (std::uint32_t k = 0; k < rays; ++k, ++query) add_query(query, eye, light + k);
-        } else {
+        const bool many = f.level >= kManyProbesLevel;
+        if (many) {
           for (int sub = 0; sub < 4; ++sub) add_eye(g, probe_pixel(g, f, q, sub));
-          for (std::uint32_t k = 0; k < rays; ++k, ++query)
-            add_query(query, eye + static_cast<std::uint32_t>(sub_probe_of(k, rays)), light + k);
+        } else {
+          add_eye(g, probe_pixel(g, f, q));
+        }
+        for (std::uint64_t left = some[static_cast<std::size_t>(q)]; left != 0; left &= left - 1, ++query) {
+          const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+          add_query(query, eye + (many ? static_cast<std::uint32_t>(sub_probe_of(k, rays)) : 0u), light + k);
         }
       }
+      if (counts_questions_) count_questions(i, before, query - before);
     }
+    queries_.size = query;
     ask(statistics);
-    if (counts_questions_) count_questions(some.size(), 4 * static_cast<std::size_t>(rays));
     const float* weight = weights_.data();
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      for (std::uint64_t& mask : masks[first + i]) {
-        mask = 0;
-        for (std::uint32_t k = 0; k < rays; ++k) mask |= static_cast<std::uint64_t>(weight[k] > 0.5f) << k;
-        weight += rays;
+    for (const std::uint32_t i : chunk) {
+      for (std::size_t q = 0; q < 4; ++q) {
+        for (std::uint64_t left = some[q]; left != 0; left &= left - 1, ++weight) masks[i][q] |= *weight > 0.5f ? left & (~left + 1) : 0;
       }
     }
   }
@@ -137,7 +168,7 @@ void ProbeTest::confirm(const GBuffer& g, std::span<const Fragment> fragments, s
                         PassStatistics& statistics) {
   const std::uint32_t rays = points_->count;
   masks.resize(fragments.size());
-  asked_.clear();
+  asked_.assign(fragments.size(), 0);
   for (std::size_t first = 0; first < fragments.size(); first += 4 * kFragments) {
     const std::span some = fragments.subspan(first, std::min(4 * kFragments, fragments.size() - first));
     queries_.eye.resize(some.size());
@@ -155,7 +186,7 @@ void ProbeTest::confirm(const GBuffer& g, std::span<const Fragment> fragments, s
       for (std::uint32_t k = 0; k < rays; ++k, ++query) add_query(query, eye, light + k);
     }
     ask(statistics);
-    if (counts_questions_) count_questions(some.size(), rays);
+    for (std::size_t i = 0; counts_questions_ && i < some.size(); ++i) count_questions(first + i, i * rays, rays);
     const float* weight = weights_.data();
     for (std::size_t i = 0; i < some.size(); ++i, weight += rays) {
       std::uint64_t mask = 0;

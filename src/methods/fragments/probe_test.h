@@ -17,6 +17,9 @@ namespace sightline {
 /// From this level on each quadrant has four probes, which share out the light's points [Koa2017].
 inline constexpr int kManyProbesLevel = 5;
 
+/// Up to this level a few rays may answer for a fragment: what they miss, neighbours mostly show.
+inline constexpr int kSparseLevel = 2;
+
 /// Pixel of the probe of quadrant `q`, or of the `sub`-th of its four from kManyProbesLevel on; moved into the picture.
 IVec2 probe_pixel(const GBuffer& g, const Fragment& f, int q, int sub = -1);
 /// Which of a quadrant's four probes asks point k: one point of every 2 x 2 block of strata each.
@@ -42,6 +45,8 @@ class ProbeTest {
   /// One more probe each at a random pixel of the fragment, which asks the same points as its quadrants did.
   void confirm(const GBuffer& g, std::span<const Fragment> fragments, std::uint32_t round, std::vector<std::uint64_t>& masks,
                PassStatistics& statistics);
+  /// From now on small fragments ask each of the light's points once first, and all the rest only if the answers differ.
+  void ask_sparsely() { sparse_ = true; }
   /// From now on asked()[i] is how many questions fragment i of the last test or confirmation has asked; exact visibility traces as many
   /// rays.
   void count_questions() { counts_questions_ = true; }
@@ -53,7 +58,9 @@ class ProbeTest {
   void add_eye(const GBuffer& g, IVec2 pixel);
   void add_query(std::size_t query, std::uint32_t eye, std::uint32_t light);
   void ask(PassStatistics& statistics);
-  void count_questions(std::size_t fragments, std::size_t questions_each);
+  void ask_some(const GBuffer& g, std::span<const Fragment> fragments, std::span<const std::uint32_t> which, const ProbeMasks& some,
+                std::vector<ProbeMasks>& masks, PassStatistics& statistics);
+  void count_questions(std::size_t fragment, std::size_t first, std::size_t count);
 
   EyeFootprint footprint_;
   Vec3 camera_;
@@ -66,7 +73,8 @@ class ProbeTest {
   std::vector<std::uint8_t> above_;  ///< by eye end: the whole light lies above its surface
   QueryBatch queries_;
   AlignedVector<float> weights_;
-  bool counts_questions_ = false;
+  std::vector<std::uint32_t> open_, small_;
+  bool sparse_ = false, counts_questions_ = false;
   std::vector<std::uint32_t> asked_;
 };
 

@@ -16,7 +16,9 @@ constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
 }  // namespace
 
 Refiner::Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed)
-    : options_(options), probes_(world, view, visibility, seed), finest_test_(world, view, visibility, options.finest, seed) {}
+    : options_(options), probes_(world, view, visibility, seed), finest_test_(world, view, visibility, options.finest, seed) {
+  if (options.sparse_tests) probes_.ask_sparsely();
+}
 
 void Refiner::set_light(const AreaLight& light, const LightPoints& points) {
   light_ = &light, points_ = &points;

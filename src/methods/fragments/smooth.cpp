@@ -1,7 +1,6 @@
 #include "methods/fragments/smooth.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/math/vec3_batch.h"
@@ -21,74 +20,15 @@ bool on_same_surface(const GBuffer& g, std::size_t centre, std::size_t other) {
          distance * distance <= kMaxSlope * kMaxSlope * length_squared(d);
 }
 
-constexpr int kBlock = kSmoothReach;
-constexpr int kBlocks = kRootSize / kBlock;
-
-/// Which blocks of a tile see nothing but one value around them: most of a picture, which is lit or dark.
-class Uniform {
- public:
-  Uniform(const SmoothInput& input, const RootTile& tile) {
-    const GBuffer& g = input.g;
-    for (int j = -1; j <= kBlocks; ++j)
-      for (int i = -1; i <= kBlocks; ++i) {
-        const int x0 = tile.x0 + i * kBlock, y0 = tile.y0 + j * kBlock;
-        const int columns = std::min(kBlock, g.width - x0), rows = std::min(kBlock, g.height - y0);
-        Block& block = blocks_[static_cast<std::size_t>(std::ptrdiff_t{j} + 1)][static_cast<std::size_t>(std::ptrdiff_t{i} + 1)];
-        block.inside = x0 >= 0 && y0 >= 0 && columns > 0 && rows > 0;
-        if (!block.inside) continue;
-        const float* first = input.signal.data() + g.at(x0, y0);
-        block.value = *first;
-        bool differs = false;
-        for (int y = 0; y < rows; ++y, first += g.stride)
-          for (int x = 0; x < columns; ++x) differs |= first[x] != block.value;
-        block.uniform = !differs;
-      }
-    for (std::size_t j = 0; j < kBlocks; ++j)
-      for (std::size_t i = 0; i < kBlocks; ++i) {
-        const float value = blocks_[j + 1][i + 1].value;
-        bool uniform = true;
-        for (std::size_t k = 0; k < 9; ++k) {
-          const Block& block = blocks_[j + k / 3][i + k % 3];
-          uniform = uniform && (!block.inside || (block.uniform && block.value == value));
-        }
-        uniform_[j][i] = uniform;
-      }
-  }
-  bool operator()(int i, int j) const { return uniform_[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)]; }
-
- private:
-  struct Block {
-    float value = 0;
-    bool inside = false, uniform = false;
-  };
-  std::array<std::array<Block, kBlocks + 2>, kBlocks + 2> blocks_;
-  std::array<std::array<bool, kBlocks>, kBlocks> uniform_;
-};
-
-// Whether all that the windows of a run of pixels can see is one value: then it stays.
-bool all_equal(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level) {
-  const GBuffer& g = input.g;
-  const int reach = kRadius * step_of(*std::max_element(level, level + count));
-  const int x0 = std::max(x - reach, 0), x1 = std::min(x + count + reach, g.width);
-  const float value = input.signal[g.at(x, y)];
-  bool differs = false;
-  for (int row = std::max(y - reach, 0); row < std::min(y + reach + 1, g.height); ++row) {
-    const float* values = input.signal.data() + g.at(x0, row);
-    for (int i = 0; i < x1 - x0; ++i) differs |= values[i] != value;
-  }
-  return !differs;
-}
-
 }  // namespace
 
 std::uint8_t window_level(const SmoothInput& input, int x, int y) {
-  constexpr int kFar = 3, kMixed = 2;
   const GBuffer& g = input.g;
   std::uint8_t level = input.level[g.at(x, y)];
   const auto mix = [&](int px, int py) {
     if (!g.inside(px, py)) return;
     const std::uint8_t other = input.level[g.at(px, py)];
-    if (other <= kMixed) level = std::max(level, other);
+    if (other <= kMixedLevel) level = std::max(level, other);
   };
   mix(x - kFar, y), mix(x + kFar, y), mix(x, y - kFar), mix(x, y + kFar);
   return level;
@@ -164,23 +104,7 @@ float smooth_pixel(const SmoothInput& input, int x, int y) {
 void smooth(const GBuffer& g, std::span<const float> signal, std::span<const std::uint8_t> level, const RootTile& tile,
             std::span<float> out) {
   const SmoothInput input{g, signal, level};
-  const Uniform uniform(input, tile);
-  constexpr int kRun = static_cast<int>(kLanes);
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; x += kRun) {
-      const int count = std::min(kRun, tile.x1 - x), i = (x - tile.x0) / kBlock, j = (y - tile.y0) / kBlock;
-      const std::size_t at = g.at(x, y);
-      std::array<std::uint8_t, kRun> windows{};
-      bool same = uniform(i, j) && uniform(i + 1, j);
-      if (!same) {
-        for (int k = 0; k < count; ++k) windows[static_cast<std::size_t>(k)] = window_level(input, x + k, y);
-        same = all_equal(input, x, y, count, windows.data());
-      }
-      if (same)
-        std::copy_n(signal.begin() + static_cast<std::ptrdiff_t>(at), count, out.begin() + static_cast<std::ptrdiff_t>(at));
-      else
-        smooth_row(input, x, y, count, windows.data(), out.data() + at);
-    }
+  for (int y = tile.y0; y < tile.y1; ++y) smooth_row(input, tile.x0, y, tile.x1 - tile.x0, out.data() + g.at(tile.x0, y));
 }
 
 }  // namespace sightline

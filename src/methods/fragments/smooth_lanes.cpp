@@ -145,25 +145,63 @@ HWY_INLINE V fitted(D d, const Moments& m, V own, V value) {
   return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(value, fit), fit), value);
 }
 
-void SmoothRow(const SmoothInput& input, int x, int y, int count, const std::uint8_t* window, float* out) {
+// window_level() of the pixels from (x, y) on.
+HWY_INLINE I window_levels(const SmoothInput& input, int x, int y) {
+  const DI di;
+  const GBuffer& g = input.g;
+  const I column = hn::Add(hn::Iota(di, 0), hn::Set(di, x));
+  I level = Reader(g, x, y).bytes(input.level.data());
+  const auto mix = [&](int dx, int dy) {
+    if (y + dy < 0 || y + dy >= g.height) return;
+    const I other = Reader(g, x + dx, y + dy).bytes(input.level.data()), px = hn::Add(column, hn::Set(di, dx));
+    const auto inside = hn::And(hn::Gt(px, hn::Set(di, -1)), hn::Lt(px, hn::Set(di, g.width)));
+    const auto counts = hn::And(inside, hn::Lt(other, hn::Set(di, kMixedLevel + 1)));
+    level = hn::Max(level, hn::IfThenElseZero(counts, other));
+  };
+  mix(-kFar, 0), mix(kFar, 0), mix(0, -kFar), mix(0, kFar);
+  return level;
+}
+
+// Whether all that windows of this reach can see from `count` pixels is one value.
+HWY_INLINE bool all_equal(const SmoothInput& input, int x, int y, int count, int reach) {
+  const D d;
+  const GBuffer& g = input.g;
+  const int x0 = HWY_MAX(x - reach, 0), x1 = HWY_MIN(x + count + reach, g.width), n = static_cast<int>(hn::Lanes(d));
+  const V value = hn::Set(d, input.signal[g.at(x, y)]);
+  for (int row = HWY_MAX(y - reach, 0); row < HWY_MIN(y + reach + 1, g.height); ++row) {
+    for (int column = x0; column < x1; column += n) {
+      const M differs =
+          hn::And(hn::Ne(Reader(g, column, row).floats(input.signal.data()), value), hn::FirstN(d, static_cast<std::size_t>(x1 - column)));
+      if (!hn::AllFalse(d, differs)) return false;
+    }
+  }
+  return true;
+}
+
+void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
   const D d;
   const DI di;
   const GBuffer& g = input.g;
   const int n = static_cast<int>(hn::Lanes(d));
   for (int k = 0; k < count; k += n) {
+    const I level = hn::Min(window_levels(input, x + k, y), hn::Set(di, 3));
+    const auto inside = hn::Lt(hn::Iota(di, 0), hn::Set(di, count - k));
+    const int widest = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(inside, level)));
     const Reader reader(g, x + k, y);
-    const V reach = hn::Mul(hn::Set(d, kMaxPlaneDistance), reader.floats(g.depth.data()));
-    const Centre centre = {reader.floats(input.signal.data()), reader.vectors(g.position), reader.vectors(g.geometric_normal),
-                           reader.vectors(g.shading_normal), hn::Mul(reach, reach)};
-    const M active = receives(d, reader, g);
-    const I level = hn::Min(hn::PromoteTo(di, hn::LoadU(DB(), window + k)), hn::Set(di, 3));
-    V result = centre.own;
-    for (int step = 1; step <= step_of(3); step *= 2) {
-      static_assert(step_of(0) == 1 && step_of(1) == 1 && step_of(2) == 2 && step_of(3) == 4 && narrowest_step(4) == 2);
-      const M large = hn::RebindMask(d, hn::Gt(level, hn::Set(di, step == 4 ? 2 : 1)));
-      const M lanes = step == 1 ? hn::AndNot(large, active) : hn::And(large, active);
-      if (hn::AllFalse(d, lanes)) continue;
-      result = hn::IfThenElse(lanes, fitted(d, gather(d, input, x + k, y, step, centre), centre.own, result), result);
+    const V own = reader.floats(input.signal.data());
+    V result = own;
+    if (!all_equal(input, x + k, y, HWY_MIN(n, count - k), kRadius * step_of(widest))) {
+      const V reach = hn::Mul(hn::Set(d, kMaxPlaneDistance), reader.floats(g.depth.data()));
+      const Centre centre = {own, reader.vectors(g.position), reader.vectors(g.geometric_normal), reader.vectors(g.shading_normal),
+                             hn::Mul(reach, reach)};
+      const M active = hn::And(receives(d, reader, g), hn::RebindMask(d, inside));
+      for (int step = 1; step <= step_of(3); step *= 2) {
+        static_assert(step_of(0) == 1 && step_of(1) == 1 && step_of(2) == 2 && step_of(3) == 4 && narrowest_step(4) == 2);
+        const M large = hn::RebindMask(d, hn::Gt(level, hn::Set(di, step == 4 ? 2 : 1)));
+        const M lanes = step == 1 ? hn::AndNot(large, active) : hn::And(large, active);
+        if (hn::AllFalse(d, lanes)) continue;
+        result = hn::IfThenElse(lanes, fitted(d, gather(d, input, x + k, y, step, centre), own, result), result);
+      }
     }
     if (k + n <= count) {
       hn::StoreU(result, d, out + k);
@@ -182,9 +220,7 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 HWY_EXPORT(SmoothRow);
 
-void smooth_row(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level, float* out) {
-  HWY_DYNAMIC_DISPATCH(SmoothRow)(input, x, y, count, level, out);
-}
+void smooth_row(const SmoothInput& input, int x, int y, int count, float* out) { HWY_DYNAMIC_DISPATCH(SmoothRow)(input, x, y, count, out); }
 
 }  // namespace sightline
 #endif

@@ -21,6 +21,8 @@ inline constexpr float kWhole = 25;  ///< pixels of a whole window
 /// Pixels from one of the window to the next, by level. Probes of a fragment share their light points, so their errors are alike: the
 /// window has to span some fragments.
 constexpr int step_of(int level) { return level < 2 ? 1 : level == 2 ? 2 : 4; }
+/// The level of a pixel's window is the coarsest around it, so far away, up to this one.
+inline constexpr int kFar = 3, kMixedLevel = 2;
 /// Large fragments may be stable by chance: where the widest window sees more than noise, one half as wide is tried.
 constexpr int narrowest_step(int widest) { return widest == 4 ? 2 : widest; }
 /// Variance of 64 and of 16 stratified rays. A straight border crosses 8 of 8 x 8 strata and 4 of 4 x 4, a quarter each at most; twice
@@ -52,7 +54,7 @@ inline constexpr float kRidge = 1e-3f;
 std::uint8_t window_level(const SmoothInput& input, int x, int y);
 /// Value of pixel (x, y). The definition.
 float smooth_pixel(const SmoothInput& input, int x, int y);
-/// The same within 2e-5 for `count` pixels from (x, y) on, at most 16; x is a multiple of 16. `level` has the window_level() of 16 pixels.
-void smooth_row(const SmoothInput& input, int x, int y, int count, const std::uint8_t* level, float* out);
+/// The same within 2e-5 for `count` pixels from (x, y) on.
+void smooth_row(const SmoothInput& input, int x, int y, int count, float* out);
 
 }  // namespace sightline
