@@ -17,6 +17,7 @@ namespace sightline {
 namespace {
 
 constexpr std::size_t kMostWavelengths = 1024;
+constexpr float kMostValue = 1e6f;
 
 /// Numbers one after the other, wherever lines break.
 class NumberReader {
@@ -104,10 +105,14 @@ std::vector<ReflectanceSample> parse_cornell_brdf(std::string_view text, const s
     const float phi_i = reader.number("phi_i");
     sample.theta_o = read_polar_angle(reader, "theta_o");
     sample.delta_phi = reader.number("phi_o") - phi_i;
+    if (!std::isfinite(sample.delta_phi)) throw reader.failure("the azimuths are out of range");
     Color sum(0);
-    for (const Color& color : colors) sum += reader.number("a value") * color;
+    for (const Color& color : colors) {
+      const float value = reader.number("a value");
+      if (!(std::fabs(value) <= kMostValue)) throw reader.failure(fmt::format("{} is no reflectance", value));
+      sum += value * color;
+    }
     sample.value = glm::max(sum, 0.f);
-    if (!is_finite(sample.value) || !std::isfinite(sample.delta_phi)) throw reader.failure("the measurement is not finite");
     samples.push_back(sample);
   }
   if (samples.empty()) throw reader.failure("there is no measurement");

@@ -95,7 +95,7 @@ Color ScatteredReflectance::at(const PairPoint& point) const {
   visit(search, 0, nodes_.size());
   float farthest = 0;
   for (int i = 0; i < search.count; ++i) farthest = std::max(farthest, search.heap[static_cast<std::size_t>(i)].distance2);
-  const float scale = farthest > 0 ? kFalloff / farthest : 0.f;
+  const float scale = farthest > 1e-20f ? kFalloff / farthest : 0.f;
   Color sum(0);
   float weights = 0;
   for (int i = 0; i < search.count; ++i) {

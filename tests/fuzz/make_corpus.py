@@ -183,6 +183,16 @@ def frame():
     return b"SLFRAME1" + struct.pack("<QQQ", len(header), len(payload), 0) + header + payload
 
 
+BRDF = b"""# a paint
+# wavelengths
+3
+450 550 650
+# theta_i phi_i theta_o phi_o f...
+0.1 0 0.2 3.1415 0.1 0.2 0.3
+0.4 0 0.5 -1.5 0.05 .2 1e-1
+1.5 1 1.2 0 20 20 20
+"""
+
 SEEDS = {
     "image_png": {f"{depth}-{kind}.png": png(depth, kind) for depth, kind in ((8, 2), (8, 6), (16, 2), (8, 0), (1, 0), (2, 3), (8, 4))},
     "image_exr": {"none-float.exr": exr(0, 2), "zip-half.exr": exr(3, 1)},
@@ -195,6 +205,7 @@ SEEDS = {
     "obj": {"square.obj": OBJ},
     "ply": ply(),
     "frame": {"tiny.frame": frame()},
+    "brdf": {"paint.brdf": BRDF},
 }
 
 

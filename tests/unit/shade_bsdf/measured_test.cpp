@@ -72,6 +72,7 @@ TEST(CornellBrdf, WhatIsWrongIsNamedWithItsLine) {
                                                        {std::string(kHeader) + "0 0 0 0 1 1", "ends where"},
                                                        {std::string(kHeader) + "0 0 0 0 1 1 x", "test.brdf:5"},
                                                        {std::string(kHeader) + "0 0 0 0 1 1 inf", "number"},
+                                                       {std::string(kHeader) + "0 0 0 0 1 1 1e9", "no reflectance"},
                                                        {std::string(kHeader) + "2 0 0 0 1 1 1", "theta_i"},
                                                        {std::string(kHeader) + "0 0 -0.1 0 1 1 1", "theta_o"}};
   for (const auto& [text, says] : cases) EXPECT_NE(error_of(text).find(says), std::string::npos) << text << ": " << error_of(text);
