@@ -28,7 +28,7 @@ class Usage(ProgramTest):
     def test_help_of_render_names_every_documented_option(self):
         text = self.ok("render", "--help").out.decode()
         for option in """--output --method --set --visibility --size --camera --eye --target --up --fov --environment --environment-scale
-                         --environment-rotate --environment-mapping --light-area --light-point --light-directional --spp --light-samples
+                         --environment-rotate --environment-mapping --light-area --light-point --light-directional --material --spp --light-samples
                          --max-bounces --seed --threads --frame --frames --fps --target-error --sample-range --skip-existing --time-limit
                          --memory-limit --checkpoint --resume --aov --exposure --tonemap --filter --simd --stats --progress --verbose
                          --quiet --log-level --smooth-terminator""".split():
