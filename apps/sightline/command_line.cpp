@@ -1,6 +1,7 @@
 #include "command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 
 #include "base/core/error.h"
 #include "base/settings/settings.h"
+#include "bench_suites.h"
 #include "session/material_option.h"
 #include "session/options_text.h"
 #include "sightline/version.h"
@@ -215,6 +217,40 @@ void add_render_output(CLI::App& app, RenderCommand& r) {
   app.add_option("--stats", r.stats, "statistics as JSON (- is stdout)")->type_name("FILE")->group(group);
 }
 
+void add_bench(CLI::App& app, BenchCommand& bench) {
+  std::vector<std::string> suites, parts;
+  for (const BenchSuite& suite : bench_suites()) {
+    suites.emplace_back(suites.empty() ? std::string(suite.name) + " (default)" : suite.name);
+    if (suite.parts) parts.push_back(fmt::format("{}: {}", suite.name, fmt::join(suite.parts(), ", ")));
+  }
+  app.add_option("SUITE", bench.suites, fmt::format("{}", fmt::join(suites, ", ")));
+  // What only some suites read says so.
+  const auto help = [](const char* name, const std::string& text) {
+    return fmt::format("{}: {}", fmt::join(suites_with(name), ", "), text);
+  };
+  const auto add_list = [&](const char* name, std::vector<std::string>& target, const std::string& text, const char* type) {
+    app.add_option(name, target, text)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
+  };
+  add_list("--view", bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
+  add_list("--part", bench.parts, fmt::format("{} (default: all)", fmt::join(parts, "; ")), "LIST");
+  add_list("--ce", bench.ce, help("--ce", "C_E of the curves (default: 4,8,16,36,64)"), "LIST");
+  add_list("--spp", bench.spp, help("--spp", "samples a pixel of curves and shadow maps (default: 1,9,16)"), "LIST");
+  app.add_option("--json", bench.json, "results as JSON (- is stdout)")->type_name("FILE");
+  app.add_option("--markdown", bench.markdown, "results as a Markdown table")->type_name("FILE");
+  app.add_option("--html", bench.html, help("--html", "charts, tables and pictures as one page"))->type_name("FILE");
+  app.add_option("--strip", bench.strip, help("--strip", "frames of what moves as a PNG"))->type_name("FILE");
+  add_parsed(app, "--size", bench.size_px, parse_size, "picture size (default: the views' own)", "WxH");
+  add_optional(app, "--truth-samples", bench.truth_samples, help("--truth-samples", "light samples a pixel of the reference"), "N")
+      ->check(CLI::Range(1, 1 << 20));
+  add_optional(app, "--rounds", bench.rounds, help("--rounds", "rounds that times are the median of (default: 3)"), "N")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--cache-dir", bench.cache_directory, help("--cache-dir", "folder in which reference pictures are kept"))
+      ->type_name("DIR");
+  add_optional(app, "--bake-dir", bench.bake_directory,
+               help("--bake-dir", "folder in which bakes are kept; '' keeps them in memory (default: the user's cache)"), "DIR");
+  app.add_flag("--quick", bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
+}
+
 }  // namespace
 
 namespace {
@@ -304,27 +340,7 @@ std::optional<CommandLine> parse_command_line(int argument_count, const char* co
   bake->add_flag("--json", line.render.bake_json, "what was found and made, as JSON");
 
   CLI::App* bench = app.add_subcommand("bench", "measure: methods and tracers side by side");
-  bench->add_option("SUITE", line.bench.suites, "trace (default), fragments or visibility-cache");
-  const auto add_list = [&](const char* name, std::vector<std::string>& target, const char* help, const char* type) {
-    bench->add_option(name, target, help)->type_name(type)->take_all()->expected(1)->allow_extra_args(false);
-  };
-  add_list("--view", line.bench.views, "a standard view, or builtin:SCENE, instead of the suite's own; repeatable", "NAME");
-  add_list("--part", line.bench.parts,
-           "fragments: table, curve, sizes, interactive; visibility-cache: curves, rivals, lookup, flicker, ablations (default: all)",
-           "LIST");
-  add_list("--ce", line.bench.ce, "visibility-cache: C_E of the curves (default: 4,8,16,36,64)", "LIST");
-  add_list("--spp", line.bench.spp, "visibility-cache: samples a pixel of curves and shadow maps (default: 1,9,16)", "LIST");
-  bench->add_option("--json", line.bench.json, "results as JSON (- is stdout)")->type_name("FILE");
-  bench->add_option("--markdown", line.bench.markdown, "results as a Markdown table")->type_name("FILE");
-  bench->add_option("--html", line.bench.html, "charts, tables and pictures as one page (not of trace)")->type_name("FILE");
-  bench->add_option("--strip", line.bench.strip, "frames of the camera move as a PNG (not of trace)")->type_name("FILE");
-  add_parsed(*bench, "--size", line.bench.size_px, parse_size, "picture size (default: the views' own, 1280x960)", "WxH");
-  add_optional(*bench, "--truth-samples", line.bench.truth_samples, "fragments: shadow rays a pixel of the reference (default: 4096)", "N")
-      ->check(CLI::Range(1, 1 << 20));
-  add_optional(*bench, "--rounds", line.bench.rounds, "fragments: rounds that times are the median of (default: 3)", "N")
-      ->check(CLI::Range(1, 1000));
-  bench->add_option("--cache-dir", line.bench.cache_directory, "fragments: folder in which reference pictures are kept")->type_name("DIR");
-  bench->add_flag("--quick", line.bench.quick, "small pictures and few repetitions: to see that it works, not to quote");
+  add_bench(*bench, line.bench);
 
   CLI::App* gallery = app.add_subcommand("gallery", "pictures and what they say about themselves as one HTML page");
   gallery->add_option("PICTURE", line.gallery.pictures, "picture files; a page of the same name (.html) beside one becomes its link")

@@ -64,6 +64,7 @@ struct BenchCommand {
   std::vector<std::string> parts, ce, spp;
   std::optional<int> truth_samples, rounds;
   std::string cache_directory;
+  std::optional<std::string> bake_directory;
   std::optional<IVec2> size_px;
   std::string json, markdown, html, strip;
   bool quick = false;

@@ -16,8 +16,10 @@ int run_methods(const CommandLine& line);
 int run_info(const CommandLine& line, Context& context);
 int run_bake(const CommandLine& line, Console& console, Context& context);
 int run_bench(const CommandLine& line, Console& console, Context& context);
+int run_trace_bench(const CommandLine& line, Context& context);
 int run_fragments_bench(const CommandLine& line, Context& context);
 int run_visibility_cache_bench(const CommandLine& line, Context& context);
+int run_square_lights_bench(const CommandLine& line, Context& context);
 int run_gallery(const CommandLine& line);
 int run_merge(const CommandLine& line, Context& context);
 
