@@ -73,6 +73,16 @@ Json scene_json(const std::string& spec, const Scene& scene) {
   if (!bounds.is_empty()) json["framing"] = camera_json(framing_camera(scene.framing ? *scene.framing : bounds));
   json["nodes"] = scene.nodes.size();
   json["animation_seconds"] = scene.animation_duration_s;
+  json["skins"] = Json::array();
+  for (const Skin& skin : scene.skins) json["skins"].push_back({{"name", skin.name}, {"joints", skin.joints.size()}});
+  json["deformable_meshes"] = Json::array();
+  for (const Mesh& mesh : scene.meshes) {
+    if (!mesh.is_deformable()) continue;
+    Json entry = {{"name", mesh.name}, {"vertices", mesh.positions.size()}, {"targets", mesh.deformation->targets.size()}};
+    if (mesh.skin.valid()) entry["skin"] = scene.skins[mesh.skin.index].name;
+    entry["joints_a_vertex"] = mesh.deformation->influences;
+    json["deformable_meshes"].push_back(entry);
+  }
   if (scene.hints.size_px) json["size"] = {scene.hints.size_px->x, scene.hints.size_px->y};
   if (scene.hints.spp) json["spp"] = *scene.hints.spp;
   if (scene.hints.max_bounces) json["max_bounces"] = *scene.hints.max_bounces;

@@ -113,7 +113,30 @@ def gltf():
     text += b" " * (-len(text) % 4)
     binary = data + b"\0" * (-len(data) % 4)
     glb = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-    return {"triangle.gltf": json.dumps(embedded).encode(), "triangle.glb": glb}
+    return {"triangle.gltf": json.dumps(embedded).encode(), "triangle.glb": glb, "bent.gltf": bent_gltf()}
+
+
+def bent_gltf():
+    """A skinned triangle with two morph targets whose weights and one joint are animated."""
+    parts = [struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0), bytes([0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0]),
+             bytes([255, 0, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0]),
+             struct.pack("<32f", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1),
+             struct.pack("<2f", 0, 1), struct.pack("<8f", 0, 0, 0, 1, 0, 0, 0.7, 0.7), struct.pack("<12f", *range(12))]
+    types = [("VEC3", 5126, 3), ("VEC4", 5121, 3), ("VEC4", 5121, 3), ("MAT4", 5126, 2), ("SCALAR", 5126, 2), ("VEC4", 5126, 2), ("SCALAR", 5126, 12)]
+    data = b"".join(parts)
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "skin": 0}, {"children": [2]}, {"translation": [1, 0, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}, "targets": [{"POSITION": 0}, {"NORMAL": 0}]}],
+                    "weights": [0.5, 0]}],
+        "skins": [{"joints": [1, 2], "inverseBindMatrices": 3}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 2, "path": "rotation"}}, {"sampler": 1, "target": {"node": 0, "path": "weights"}}],
+                        "samplers": [{"input": 4, "output": 5}, {"input": 4, "output": 6, "interpolation": "CUBICSPLINE"}]}],
+        "accessors": [{"bufferView": i, "type": t, "componentType": c, "count": n, "normalized": i == 2} for i, (t, c, n) in enumerate(types)],
+        "bufferViews": [{"buffer": 0, "byteOffset": sum(map(len, parts[:i])), "byteLength": len(part)} for i, part in enumerate(parts)],
+        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+    }
+    return json.dumps(document).encode()
 
 
 PBRT = b"""# every directive once
