@@ -8,6 +8,7 @@
 #include "methods/fragments/method.h"
 #include "methods/method.h"
 #include "methods/reference/method.h"
+#include "methods/square_lights/method.h"
 #include "methods/visibility_cache/method.h"
 
 namespace sightline {
@@ -17,7 +18,8 @@ std::span<const Method* const> methods() {
   static const BidirectionalMethod bidirectional;
   static const VisibilityCacheMethod visibility_cache;
   static const FragmentsMethod fragments;
-  static const std::array<const Method*, 4> table = {&reference, &bidirectional, &visibility_cache, &fragments};
+  static const SquareLightsMethod square_lights;
+  static const std::array<const Method*, 5> table = {&reference, &bidirectional, &visibility_cache, &fragments, &square_lights};
   return table;
 }
 

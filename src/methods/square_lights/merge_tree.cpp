@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "base/parallel/parallel.h"
+#include "methods/square_lights/moment_merge.h"
+#include "methods/square_lights/region_moments.h"
 #include "methods/square_lights/square_fit.h"
 
 namespace sightline::square_lights {
@@ -152,7 +154,8 @@ class FaceMerger {
     node.error = pair.fit.error;
     node.left = static_cast<std::int32_t>(pair.a);
     node.right = static_cast<std::int32_t>(pair.b);
-    set_moments(node, merged);
+    set_moments(
+        node, merged.texels, [this](std::uint32_t t) { return points_[t].solid_angle; }, [this](std::uint32_t t) { return radiance_[t]; });
     nodes_.push_back(node);
     keys_.push_back(pair.key);
 
@@ -161,23 +164,6 @@ class FaceMerger {
       regions_[n].neighbours.push_back(id);
       push(n, id);
     }
-  }
-
-  void set_moments(MergeNode& node, const Region& region) const {
-    double area = 0, flux = 0;
-    for (const std::uint32_t t : region.texels) {
-      area += points_[t].solid_angle;
-      flux += static_cast<double>(points_[t].solid_angle) * luminance(radiance_[t]);
-    }
-    const double mean = flux / area;
-    double second = 0, third = 0;
-    for (const std::uint32_t t : region.texels) {
-      const double d = std::fabs(luminance(radiance_[t]) - mean), weighted = points_[t].solid_angle * d * d;
-      second += weighted;
-      third += weighted * d;
-    }
-    node.deviation = static_cast<float>(std::sqrt(second / area));
-    node.third_moment = static_cast<float>(std::cbrt(third / area));
   }
 
   MergeOptions options_;
@@ -194,6 +180,7 @@ class FaceMerger {
 }  // namespace
 
 MergeTree MergeTree::build(const LightCube& cube, const MergeOptions& options, const Context& context) {
+  if (options.criterion == MergeOptions::Criterion::moments) return merge_by_moments(cube, options, context);
   const std::size_t face_texels = cube.count() / kCubeFaces;
   std::vector<FaceMerger> faces;
   faces.reserve(kCubeFaces);

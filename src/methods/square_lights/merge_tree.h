@@ -11,8 +11,9 @@
 namespace sightline::square_lights {
 
 struct MergeOptions {
-  /// Which pair is merged next: that with the least J of the merged region (the paper), or with the least growth J(ij) - J(i) - J(j).
-  enum class Criterion { paper, ward } criterion = Criterion::paper;
+  /// Which pair is merged next: that with the least J of the merged region (the paper), or with the least growth J(ij) - J(i) - J(j), or
+  /// with the least growth of flux² times variance of direction, with lights that have their region's first two moments (moment_merge.h).
+  enum class Criterion { paper, ward, moments } criterion = Criterion::paper;
   bool area_penalty = true;  ///< the factor |S| of J; off is an ablation
 };
 
@@ -32,12 +33,12 @@ class MergeTree {
  public:
   MergeTree() = default;
   MergeTree(std::vector<MergeNode> nodes, std::size_t texels) : nodes_(std::move(nodes)), texels_(texels) {}
-  /// The heap version of Fig. 5. Regions never cross the edge of a face; black maps merge all the same.
+  /// The heap version of Fig. 5. Regions never cross the edge of a face (but by moments); black maps merge all the same.
   static MergeTree build(const LightCube& cube, const MergeOptions& options, const Context& context);
 
   std::span<const MergeNode> nodes() const { return nodes_; }
   std::size_t texels() const { return texels_; }
-  /// Fewest regions that merging reaches: one a face.
+  /// Fewest regions that merging reaches: one a face, by moments one.
   std::size_t least() const { return 2 * texels_ - nodes_.size(); }
   /// Nodes alive when `count` regions were left (clamped to what there is).
   std::vector<std::int32_t> cut(std::size_t count) const;

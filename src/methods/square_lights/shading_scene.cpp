@@ -14,6 +14,9 @@ namespace {
 
 // Vertices of the net that stands for an analytic sphere: rings from pole to pole, and points along each.
 constexpr std::uint32_t kRings = 48, kMeridians = 96;
+constexpr std::uint32_t kNone = ~0u;
+// Normals that differ by less, as unit vectors, are of one plane.
+constexpr float kSameNormal = 1e-3f;
 
 /// Node that carries an instance through time: the nearest animated one at or above it; invalid if it stands still.
 NodeId carrier(const Scene& scene, NodeId node) {
@@ -162,6 +165,15 @@ void ShadingScene::add_mesh(const World& world, std::uint32_t index, ShadingObje
     member.shared = mesh.triangles.data(), member.base = base;
   }
   std::unordered_map<std::uint64_t, std::uint32_t> known;  // (vertex, material), for smooth meshes of several materials
+  // Corners of flat triangles around a vertex that lie in one plane are one: the last that was made of it and the one before, by chains.
+  std::vector<std::uint32_t> last(smooth ? 0 : positions.size(), kNone), before;
+  const auto flat_corner = [&](std::uint32_t vertex, const Vec3& normal, std::uint32_t material) {
+    for (std::uint32_t i = last[vertex]; i != kNone; i = before[i - base]) {
+      if (vertices_.material[i] == material && length_squared(vertices_.normal[i] - normal) < kSameNormal * kSameNormal) return i;
+    }
+    before.push_back(last[vertex]);
+    return last[vertex] = add(vertex, normal, material);
+  };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const UVec3& corners = mesh.triangles[t];
     const Vec3 twice_area = winding * glm::cross(positions[corners.y] - positions[corners.x], positions[corners.z] - positions[corners.x]);
@@ -170,7 +182,7 @@ void ShadingScene::add_mesh(const World& world, std::uint32_t index, ShadingObje
       const std::uint32_t material = material_of(t);
       for (int k = 0; k < 3; ++k) {
         if (!smooth) {
-          triangle[k] = add(corners[k], normalize_or(twice_area, Vec3(0, 0, 1)), material);
+          triangle[k] = flat_corner(corners[k], normalize_or(twice_area, Vec3(0, 0, 1)), material);
           continue;
         }
         const auto [at, fresh] = known.try_emplace(std::uint64_t{material} << 32 | corners[k], 0);
