@@ -3,6 +3,7 @@
 import json
 import os
 import stat
+import struct
 import subprocess
 import time
 
@@ -41,6 +42,38 @@ class Pictures(ProgramTest):
             self.assertTrue(any(name.startswith(layer + ".") for name in channels), f"{layer}: {channels}")
         self.render("-o", "b.exr")
         self.assertEqual(exr_channels((self.folder / "b.exr").read_bytes())[:3], ["B", "G", "R"])
+
+    def write_pfm(self, name, width, height, value):
+        rows = (value(x, y) for y in reversed(range(height)) for x in range(width))
+        (self.folder / name).write_bytes(b"PF\n%d %d\n-1.0\n" % (width, height) + b"".join(struct.pack("<3f", v, v, v) for v in rows))
+
+    def test_environment_turns_with_the_frames(self):
+        self.write_pfm("sky.pfm", 32, 16, lambda x, y: 20.0 if (x, y) == (9, 5) else 0.3)
+        light = ("--environment", "sky.pfm", "-q")
+        scene = "builtin:pair,vertices=2000"
+        self.render("-o", "turned-####.pfm", "--frames", "0-4x2", "--environment-turn", "20", *light, scene=scene)
+        for frame, degrees in ((0, 0), (2, 40), (4, 80)):
+            self.render("-o", "rotated.pfm", "--frame", frame, "--environment-rotate", degrees, *light, scene=scene)
+            self.assertEqual((self.folder / f"turned-{frame:04}.pfm").read_bytes(), (self.folder / "rotated.pfm").read_bytes(), frame)
+
+    def test_environment_as_a_cube(self):
+        # Face +Y alone is bright: the same as a cube file, and the same again when it is made into a cube of its own size.
+        self.write_pfm("cube.pfm", 2, 12, lambda x, y: 3.0 if 4 <= y < 6 else 0.0)
+        scene = "builtin:pair,vertices=2000"
+        light = ("--environment", "cube.pfm", "--environment-mapping", "cube", "-q")
+        self.render("-o", "a.pfm", *light, scene=scene)
+        self.render("-o", "b.pfm", *light, "--environment-cube", "2", scene=scene)
+        self.render("-o", "c.pfm", *light, "--environment-cube", "6", scene=scene)
+        a, b, c = ((self.folder / name).read_bytes() for name in ("a.pfm", "b.pfm", "c.pfm"))
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)  # other samples of the same light
+        means = [json.loads(self.ok("info", "--json", name).out)["channels"][0]["mean"] for name in ("a.pfm", "c.pfm")]
+        self.assertGreater(means[0], 0.1)
+        self.assertAlmostEqual(means[0], means[1], delta=0.05 * means[0])
+        self.write_pfm("strip.pfm", 2, 10, lambda x, y: 1.0)
+        self.fails(3, "render", scene, "-o", "d.pfm", "--environment", "strip.pfm", "--environment-mapping", "cube", says=("six square faces",))
+        self.fails(2, "render", scene, "-o", "d.pfm", "--no-default-light", "--environment-cube", "4", says=("no environment",))
+        self.fails(2, "render", scene, "-o", "d.pfm", "--environment-cube", "0")
 
     def test_alpha_is_coverage(self):
         # A square that fills half of the view, lit by a white environment.
