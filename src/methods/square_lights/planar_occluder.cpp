@@ -76,7 +76,7 @@ float PlanarOccluder::distance(const Vec3& position, const Vec3& c) const {
   const float height = glm::dot(normal_, position - corners_[0]);
   if (height == 0) return kNoOccluder;
   // Great circles through the edges; their normals point out of the polygon as seen from here.
-  const float side = height > 0 ? -1.f : 1.f;
+  const float side = height > 0 ? 1.f : -1.f;
   float outside = -10;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const Vec3 out = side * normalize_or(glm::cross(corners_[i] - position, corners_[(i + 1) % corners_.size()] - position), Vec3(0));
