@@ -325,6 +325,45 @@ TEST(WorldEdit, MovingAStaticMeshPromotesItOnce) {
   expect_same_picture(*first, *build(mixed_scene()));
 }
 
+TEST(WorldEdit, BentMeshesRebuildThemselvesAlone) {
+  Scene scene = mixed_scene();
+  // A target that lifts the first mesh by 1, with a weight that goes from 0 to 1 within a second.
+  auto deformation = std::make_shared<Deformation>();
+  deformation->positions = scene.meshes[0].positions;
+  deformation->targets.resize(1);
+  deformation->targets[0].positions = std::vector<Vec3>(scene.meshes[0].positions.size(), Vec3{0, 1, 0});
+  scene.meshes[0].deformation = deformation;
+  scene.meshes[0].weights_node = NodeId(0);
+  scene.nodes.resize(1);
+  scene.nodes[0].weights = {0};
+  scene.nodes[0].weights_track = {.interpolation = Interpolation::linear, .times_s = {0, 1}, .values = {0, 1}};
+  const Context context;
+  std::shared_ptr<const World> world = build(pose(scene, 0));
+  for (const float time_s : {0.25f, 0.5f}) {
+    world = World::edit(*world, pose(scene, time_s), context);
+    EXPECT_EQ(world->tracer().statistics().static_scenes_built, 0u);
+    EXPECT_EQ(world->tracer().statistics().mesh_scenes_built, 1u);
+    expect_same_picture(*world, *build(pose(scene, time_s)));
+    Scene lifted = mixed_scene();
+    lifted.instances[0].world_from_object = glm::translate(Mat4(1), Vec3{0, time_s, 0}) * lifted.instances[0].world_from_object;
+    expect_same_picture(*world, *build(lifted));
+  }
+}
+
+TEST(WorldEdit, TurnedEnvironmentsLeaveGeometryAndTexturesAlone) {
+  Scene scene = mixed_scene();
+  scene.environment = Environment{};
+  scene.environment->image = std::make_shared<const Image>(Image{8, 4, 1, Image::Floats(32, 1.f)});
+  const auto first = build(scene);
+  const Context context;
+  scene.environment->world_from_environment = Mat3(glm::rotate(Mat4(1), 0.5f, Vec3{0, 1, 0}));
+  const auto second = World::edit(*first, scene, context);
+  EXPECT_EQ(second->tracer().statistics().static_scenes_built, 0u);
+  EXPECT_EQ(second->tracer().statistics().mesh_scenes_built, 0u);
+  EXPECT_EQ(&second->textures(), &first->textures());
+  EXPECT_NE(&second->lights(), &first->lights());
+}
+
 TEST(WorldEdit, MeshesAndSpheresComeAndGo) {
   Scene scene = mixed_scene();
   auto world = build(scene);
