@@ -9,7 +9,7 @@ namespace sightline {
 namespace {
 
 // Enough sets that neighbours hardly ever share one, and few enough to stay in the L2 cache.
-constexpr std::uint32_t kPoints = 1u << 14, kLeastSets = 4, kMostSets = 256;
+constexpr std::uint32_t kPoints = 1u << 13, kLeastSets = 4, kMostSets = 128;
 constexpr std::size_t kChunk = 1024;
 
 }  // namespace

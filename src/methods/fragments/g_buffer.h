@@ -49,7 +49,9 @@ struct GBuffer {
   AlignedVector<float> depth;  ///< distance from the camera; +infinity for background
   Vec3Batch albedo;            ///< of the whole BSDF
   AlignedVector<PixelKind> kind;
-  AlignedVector<std::uint8_t> back;              ///< 1: seen from behind, normals were turned
+  AlignedVector<std::uint8_t> back;  ///< 1: seen from behind, normals were turned
+  /// 1: next to nothing changes from the pixel to its right and lower neighbours. May be empty: not known.
+  AlignedVector<std::uint8_t> flat;
   AlignedVector<std::uint32_t> glossy_index;     ///< of `analytic` pixels: into their root tile's list
   std::vector<std::vector<GlossyPoint>> glossy;  ///< by root tile
 

@@ -31,15 +31,26 @@ struct LightSignal {
   int stride = 0, rows = 0;
   AlignedVector<std::uint8_t> level, flags;
   std::array<AlignedVector<float>, 3> value, extra;
+  /// By block of 8 x 8 pixels: the last round of refinement along borders that changed it, from 1 on; 0 = none.
+  AlignedVector<std::uint8_t> round;
+  static constexpr int kBlock = 8;
+
+  std::uint8_t& round_at(int x, int y) { return round[block_of(x, y)]; }
+  std::uint8_t round_at(int x, int y) const { return round[block_of(x, y)]; }
 
   void resize(const GBuffer& g, int channel_count) {
     channels = channel_count, stride = g.stride, rows = g.rows;
     const std::size_t n = static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows);
-    level.resize(n), flags.resize(n);
+    level.resize(n), flags.resize(n), round.resize(n / (kBlock * kBlock));
     for (int c = 0; c < channels; ++c) {
       for (AlignedVector<float>* array : {&value[static_cast<std::size_t>(c)], &extra[static_cast<std::size_t>(c)]})
         reserve_in_large_pages(*array, n), array->resize(n);
     }
+  }
+
+ private:
+  std::size_t block_of(int x, int y) const {
+    return static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(stride / kBlock) + static_cast<std::size_t>(x / kBlock);
   }
 };
 

@@ -36,7 +36,8 @@ void FragmentsMethod::check(const Scene&, const RenderJob& job) const {
 
 void FragmentsMethod::render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                                   const Context& context) const {
-  FragmentPicture picture(job, *job.view, job.settings.as<FragmentsSettings>(), context);
+  FragmentPicture picture(job, *job.view, job.settings.as<FragmentsSettings>(), context,
+                          buffers_.take(job.view->width(), job.view->height()));
   picture.expect(range.count());
   for (std::uint32_t sample = range.begin; sample < range.end; ++sample) {
     // Whole pictures: tiles are done together.
@@ -46,6 +47,7 @@ void FragmentsMethod::render_pass(const RenderJob& job, SampleRange range, Frame
     job.visibility->begin_pass({sample, 0}, context);
     picture.render(sample, frame, statistics);
   }
+  buffers_.give(picture.release());
 }
 
 }  // namespace sightline

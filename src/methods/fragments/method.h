@@ -1,6 +1,7 @@
 // Direct light from area lights at the resolution that the shadow needs. See README.md beside this file.
 #pragma once
 
+#include "methods/fragments/picture_buffers.h"
 #include "methods/method.h"
 
 namespace sightline {
@@ -13,6 +14,9 @@ class FragmentsMethod final : public Method {
   void check(const Scene& scene, const RenderJob& job) const override;
   void render_pass(const RenderJob& job, SampleRange range, Frame& frame, PassStatistics& statistics,
                    const Context& context) const override;
+
+ private:
+  PictureBufferStore buffers_;
 };
 
 }  // namespace sightline

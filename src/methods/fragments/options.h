@@ -19,6 +19,7 @@ struct FragmentOptions {
   bool interpolate_probes = true;
   bool smooth = true;
   bool dark_culling = true;
+  PointJitter jitter = PointJitter::blue;
   bool sparse_tests = true;  ///< small fragments trace a quarter of their rays first
   bool extra_samples = true;
   int confirm = 1;                      ///< probes that confirm a stable fragment of level 3 or more

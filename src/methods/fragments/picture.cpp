@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <mutex>
+#include <utility>
 
 #include "base/core/huge_pages.h"
 #include "base/math/vec3_batch.h"
@@ -33,8 +34,15 @@ void count_refinement(const RefinementCounts& before, const RefinementCounts& af
 
 }  // namespace
 
-FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context)
-    : job_(job), view_(view), context_(context), settings_(settings), options_(resolve(settings)), map_(settings.show) {
+FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context,
+                                 PictureBuffers&& buffers)
+    : job_(job),
+      view_(view),
+      context_(context),
+      settings_(settings),
+      options_(resolve(settings)),
+      buffers_(std::move(buffers)),
+      map_(settings.show) {
   const World& world = *job.world;
   if (job.light_samples > 0)
     options_.finest.rays = options_.finest.smooth_rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
@@ -42,8 +50,8 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
   const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);
   for (const AreaLight& light : lights_) {
-    const bool blue = settings.jitter == FragmentsSettings::Jitter::blue && !neighbours;
-    points_.push_back(light_points(world.lights(), light, rays, context.seed, blue ? PointJitter::blue : PointJitter::hash));
+    const PointJitter jitter = neighbours ? PointJitter::hash : options_.jitter;
+    points_.push_back(light_points(world.lights(), light, rays, context.seed, jitter));
   }
   allocate();
   fragments_.resize(g_.root_count()), progress_.resize(g_.root_count());
@@ -62,7 +70,9 @@ void FragmentPicture::allocate() {
   parallel_for(context_, arrays.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) reserve_in_large_pages(*arrays[i], n), arrays[i]->resize(n);
   });
-  g_.kind.resize(n), g_.back.resize(n), g_.glossy_index.resize(n);
+  for (auto* bytes : {&g_.back, &g_.flat}) reserve_in_large_pages(*bytes, n), bytes->resize(n);
+  reserve_in_large_pages(g_.kind, n), g_.kind.resize(n);
+  g_.glossy_index.resize(n);
 }
 
 // Runs body(tile, thread, statistics) over `count` tiles, and adds up what they counted and how long they took.
@@ -107,7 +117,7 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
   if (!lights_.empty()) {
     for_roots("geometry", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
       fragments_[root].clear();
-      pyramids_[thread].build(g_, g_.root(root), options_.geometry);
+      pyramids_[thread].build(g_, g_.root(root), options_.geometry, g_.flat.data());
       if (map_.wants_curvature()) map_.set_geometry(g_, g_.root(root), pyramids_[thread], options_.geometry);
       pyramids_[thread].refine(g_, g_.root(root), options_.geometry, fragments_[root]);
     });
@@ -162,7 +172,7 @@ void FragmentPicture::render_light(const AreaLight& light, std::uint32_t sample,
 // Tiles look at each other's signals between the rounds, and never while they are written.
 void FragmentPicture::refine_borders(std::uint32_t sample, PassStatistics& statistics) {
   const double expected = steps_done_ + 2.0 * options_.border_rounds * static_cast<double>(g_.root_count());
-  for (int round = 0; round < options_.border_rounds && signal_.channels == 1; ++round) {
+  for (int round = 1; round <= options_.border_rounds && signal_.channels == 1; ++round) {
     const auto in_turn = [&](auto step) {
       for_roots("visibility", statistics, [&](std::size_t root, std::size_t thread, PassStatistics& local) {
         Refiner& refiner = *refiners_[thread];
@@ -171,10 +181,10 @@ void FragmentPicture::refine_borders(std::uint32_t sample, PassStatistics& stati
         count_refinement(before, refiner.counts(), local);
       });
     };
-    in_turn([&](Refiner& refiner, std::size_t root, PassStatistics&) { refiner.find_borders(g_, signal_, progress_[root]); });
+    in_turn([&](Refiner& refiner, std::size_t root, PassStatistics&) { refiner.find_borders(g_, signal_, round, progress_[root]); });
     if (std::ranges::all_of(progress_, [](const TileProgress& p) { return p.children.empty(); })) break;
     in_turn([&](Refiner& refiner, std::size_t root, PassStatistics& local) {
-      refiner.refine_borders(g_, root, sample, signal_, progress_[root], local);
+      refiner.refine_borders(g_, root, sample, round, signal_, progress_[root], local);
     });
   }
   steps_done_ = expected;  // rounds that were not needed

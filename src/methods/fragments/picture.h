@@ -15,6 +15,7 @@
 #include "methods/fragments/light_signal.h"
 #include "methods/fragments/nichols_refiner.h"
 #include "methods/fragments/options.h"
+#include "methods/fragments/picture_buffers.h"
 #include "methods/fragments/refiner.h"
 #include "methods/fragments/stage_map.h"
 #include "methods/method.h"
@@ -24,12 +25,16 @@ namespace sightline {
 /// Buffers of a whole picture, for one sample after the other.
 class FragmentPicture {
  public:
-  FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context);
+  /// `buffers` may be those of an earlier picture of the same size.
+  FragmentPicture(const RenderJob& job, const View& view, const FragmentsSettings& settings, const Context& context,
+                  PictureBuffers&& buffers);
 
   /// How many samples will be asked for: for the progress that is reported.
   void expect(std::uint32_t samples);
   /// Adds picture sample `sample` to the frame.
   void render(std::uint32_t sample, Frame& frame, PassStatistics& statistics);
+  /// Its buffers, once it is done.
+  PictureBuffers release() { return std::move(buffers_); }
 
  private:
   void allocate();
@@ -55,11 +60,12 @@ class FragmentPicture {
   std::vector<AreaLight> lights_;
   std::vector<LightPoints> points_;
 
-  GBuffer g_;
-  Vec3Batch radiance_;
-  LightSignal signal_;
-  std::array<AlignedVector<float>, 3> pixels_;
-  AlignedVector<float> smoothed_;
+  PictureBuffers buffers_;
+  GBuffer& g_ = buffers_.g;
+  Vec3Batch& radiance_ = buffers_.radiance;
+  LightSignal& signal_ = buffers_.signal;
+  std::array<AlignedVector<float>, 3>& pixels_ = buffers_.pixels;
+  AlignedVector<float>& smoothed_ = buffers_.smoothed;
   StageMap map_;
   std::unique_ptr<EdgePass> edges_;
   std::vector<std::vector<Fragment>> fragments_;  ///< by root tile: what geometry left

@@ -21,14 +21,14 @@ DiscontinuityPyramid::DiscontinuityPyramid() {
 }
 
 // Level 0 compares a pixel with its right and its lower neighbour, so that a border between two squares is recorded in the upper left one.
-void DiscontinuityPyramid::build(const GBuffer& g, const RootTile& tile, const GeometryOptions& options) {
+void DiscontinuityPyramid::build(const GBuffer& g, const RootTile& tile, const GeometryOptions& options, std::uint8_t* flat) {
   std::fill(kappa_[0].begin(), kappa_[0].end(), 0.f), std::fill(dz_[0].begin(), dz_[0].end(), 0.f);
   std::fill(any_[0].begin(), any_[0].end(), std::uint8_t{0});
   for (int y = tile.y0; y < tile.y1; ++y) {
     const std::size_t to = at(0, 0, y - tile.y0);
     discontinuities(
         g, {g.at(tile.x0, y), static_cast<std::size_t>(tile.x1 - tile.x0), tile.x1 == g.width, y + 1 == g.height, options.plane_distance},
-        kappa_[0].data() + to, dz_[0].data() + to, any_[0].data() + to);
+        kappa_[0].data() + to, dz_[0].data() + to, any_[0].data() + to, flat ? flat + g.at(tile.x0, y) : nullptr);
   }
   for (int m = 1; m <= kRootLevel; ++m) {
     const int size = kRootSize >> m;

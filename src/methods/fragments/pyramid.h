@@ -21,7 +21,8 @@ struct GeometryOptions {
 class DiscontinuityPyramid {
  public:
   DiscontinuityPyramid();
-  void build(const GBuffer& g, const RootTile& tile, const GeometryOptions& options);
+  /// `flat`, unless it is null, is filled as GBuffer::flat.
+  void build(const GBuffer& g, const RootTile& tile, const GeometryOptions& options, std::uint8_t* flat = nullptr);
   /// Fragments that cover the tile and hold no discontinuity, coarse ones first where they may be; those of level 0 too. Squares without
   /// any surface to interpolate on are left out.
   void refine(const GBuffer& g, const RootTile& tile, const GeometryOptions& options, std::vector<Fragment>& fragments) const;

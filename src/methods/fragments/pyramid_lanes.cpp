@@ -19,7 +19,7 @@ namespace sightline::HWY_NAMESPACE {
 using namespace lanes;
 
 void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_RESTRICT kappa, float* HWY_RESTRICT dz,
-                     std::uint8_t* HWY_RESTRICT any) {
+                     std::uint8_t* HWY_RESTRICT any, std::uint8_t* HWY_RESTRICT flat) {
   const D d;
   const DU du;
   const auto bytes = hn::Rebind<std::uint8_t, D>();
@@ -39,7 +39,7 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
     const M surface = hn::RebindMask(d, surface_bits);
     const V3 p = load3(d, g.position, here), ng = load3(d, g.geometric_normal, here), ns = load3(d, g.shading_normal, here);
     const V depth = hn::LoadU(d, g.depth.data() + here);
-    V bend = zero, step = zero;
+    V bend = zero, step = zero, reach = zero;
     const auto compare = [&](std::size_t there, M valid) {
       const auto other_kind = kinds_at(there);
       const M other = hn::RebindMask(d, interpolated(other_kind)), same = hn::RebindMask(d, hn::Eq(kind, other_kind));
@@ -48,8 +48,12 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
       const M smooth = hn::And(hn::And(valid, surface), same);
       const V3 change = sub3(ns, load3(d, g.shading_normal, there));
       bend = hn::Add(bend, hn::IfThenElseZero(smooth, dot3(change, change)));
-      const V away =
-          row.plane_distance ? dot3(sub3(load3(d, g.position, there), p), ng) : hn::Sub(hn::LoadU(d, g.depth.data() + there), depth);
+      const V3 towards = sub3(load3(d, g.position, there), p);
+      const V from_plane = dot3(towards, ng), away = row.plane_distance ? from_plane : hn::Sub(hn::LoadU(d, g.depth.data() + there), depth);
+      // Squares of what flatness is about: how far the neighbour is, and how far from the tangent plane.
+      const V far = hn::Mul(dot3(towards, towards), hn::Set(d, 1 / (kFlatReach * kFlatReach)));
+      const V off = hn::Mul(hn::Mul(from_plane, from_plane), hn::Set(d, 1 / (kFlatStep * kFlatStep)));
+      reach = hn::Max(reach, hn::IfThenElseZero(valid, hn::Max(far, off)));
       step = hn::Max(step, hn::IfThenElseZero(smooth, hn::Div(hn::Abs(away), depth)));
       bend = hn::IfThenElse(broken, infinity, bend), step = hn::IfThenElse(broken, infinity, step);
     };
@@ -57,8 +61,13 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
     compare(here + 1, hn::FirstN(d, row.right_edge ? left - 1 : left));
     if (!row.lower_edge) compare(here + static_cast<std::size_t>(g.stride), hn::FirstN(d, left));
     hn::StoreU(hn::Sqrt(bend), d, kappa + i), hn::StoreU(step, d, dz + i);
-    const auto ones = hn::IfThenElseZero(hn::And(surface_bits, hn::FirstN(du, left)), hn::Set(du, 1u));
-    hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(DI(), ones)), bytes, any + i);
+    const auto as_bytes = [&](hn::Mask<DU> mask) {
+      return hn::DemoteTo(bytes, hn::BitCast(DI(), hn::IfThenElseZero(mask, hn::Set(du, 1u))));
+    };
+    hn::StoreU(as_bytes(hn::And(surface_bits, hn::FirstN(du, left))), bytes, any + i);
+    if (!flat) continue;
+    const M even = hn::And(hn::Le(bend, hn::Set(d, kFlatBend * kFlatBend)), hn::Le(reach, hn::Mul(depth, depth)));
+    hn::StoreU(as_bytes(hn::And(surface_bits, hn::RebindMask(du, even))), bytes, flat + i);
   }
 }
 
@@ -69,8 +78,8 @@ HWY_AFTER_NAMESPACE();
 namespace sightline {
 HWY_EXPORT(Discontinuities);
 
-void discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* kappa, float* dz, std::uint8_t* any) {
-  HWY_DYNAMIC_DISPATCH(Discontinuities)(g, row, kappa, dz, any);
+void discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* kappa, float* dz, std::uint8_t* any, std::uint8_t* flat) {
+  HWY_DYNAMIC_DISPATCH(Discontinuities)(g, row, kappa, dz, any, flat);
 }
 
 }  // namespace sightline

@@ -16,7 +16,12 @@ struct DiscontinuityRow {
 };
 
 /// kappa = sqrt(|N - N_right|^2 + |N - N_lower|^2), dz = the larger relative change of depth; both infinite where one of two pixels is
-/// interpolated and the other is not, or their kinds differ. any = 1 for pixels that are interpolated. Writes padded(count).
-void discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* kappa, float* dz, std::uint8_t* any);
+/// interpolated and the other is not, or their kinds differ. any = 1 for pixels that are interpolated; flat (may be null) as in GBuffer.
+/// Writes padded(count).
+void discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* kappa, float* dz, std::uint8_t* any, std::uint8_t* flat);
+
+/// What makes a pixel flat: change of the normal, distance of neighbours from its tangent plane, and their distance, over depth. So little
+/// that sixteen steps from one flat pixel to the next do not leave a surface in the sense of smoothing.
+inline constexpr float kFlatBend = 2e-3f, kFlatStep = 5e-6f, kFlatReach = 0.02f;
 
 }  // namespace sightline

@@ -47,9 +47,14 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   refine_children(g, sample, signal, progress, statistics);
 }
 
-void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
-                             PassStatistics& statistics) {
+void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, int round, LightSignal& signal,
+                             TileProgress& progress, PassStatistics& statistics) {
   if (progress.children.empty()) return;
+  for (const Fragment& f : progress.children) {
+    const int x1 = std::min(f.x + f.width(), signal.stride), y1 = std::min(f.y + f.width(), signal.rows);
+    for (int y = f.y; y < y1; y += LightSignal::kBlock)
+      for (int x = f.x; x < x1; x += LightSignal::kBlock) signal.round_at(x, y) = static_cast<std::uint8_t>(round);
+  }
   begin(index, sample);
   reached_ = true;  // stable fragments were tested, and so are their children
   refine_children(g, sample, signal, progress, statistics);
@@ -194,6 +199,8 @@ void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
 
 // Pixels without light, until something else is written there.
 void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal) const {
+  for (int y = tile.y0; y < tile.y0 + kRootSize; y += LightSignal::kBlock)
+    std::fill_n(&signal.round_at(tile.x0, y), kRootSize / LightSignal::kBlock, std::uint8_t{0});
   for (int y = tile.y0; y < tile.y0 + kRootSize; ++y) {
     std::fill_n(signal.level.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{0});
     std::fill_n(signal.flags.data() + g.at(tile.x0, y), kRootSize, std::uint8_t{LightSignal::kUnlit});

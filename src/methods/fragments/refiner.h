@@ -44,10 +44,10 @@ class Refiner {
   void refine(const GBuffer& g, std::size_t index, std::span<const Fragment> fragments, std::uint32_t sample, LightSignal& signal,
               TileProgress& progress, PassStatistics& statistics);
   /// Moves from progress.done to progress.children what has to be refined again because of what lies beside it, also in other root tiles:
-  /// nothing may be writing to `signal`.
-  void find_borders(const GBuffer& g, const LightSignal& signal, TileProgress& progress);
+  /// nothing may be writing to `signal`. Rounds count from 1.
+  void find_borders(const GBuffer& g, const LightSignal& signal, int round, TileProgress& progress);
   /// Refines progress.children.
-  void refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, LightSignal& signal, TileProgress& progress,
+  void refine_borders(const GBuffer& g, std::size_t index, std::uint32_t sample, int round, LightSignal& signal, TileProgress& progress,
                       PassStatistics& statistics);
   const RefinementCounts& counts() const { return counts_; }
 

@@ -1,4 +1,5 @@
 // Where the signal jumps between fragments.
+#include <algorithm>
 #include <cmath>
 
 #include "base/math/vec3_batch.h"
@@ -13,7 +14,7 @@ constexpr int kPixelsLevel = 2;  // fragments up to this one become pixels at on
 
 // Stable fragments beside which the signal jumps: the jump lies somewhere between their probes and the border. Small ones become pixels,
 // large ones are tested again in smaller squares.
-void Refiner::find_borders(const GBuffer& g, const LightSignal& signal, TileProgress& progress) {
+void Refiner::find_borders(const GBuffer& g, const LightSignal& signal, int round, TileProgress& progress) {
   const auto value_at = [&](int x, int y) {
     const int half = (1 << signal.level[g.at(x, y)]) / 2;
     return half == 0 ? signal.value[0][g.at(x, y)] : signal.value[0][g.at(x & -half, y & -half)];
@@ -27,8 +28,21 @@ void Refiner::find_borders(const GBuffer& g, const LightSignal& signal, TileProg
     return glm::dot(load(g.shading_normal, here), load(g.shading_normal, there)) > 0.9f &&
            std::fabs(glm::dot(load(g.position, there) - load(g.position, here), normal)) < 0.01f * g.depth[here];
   };
+  // What has been looked at is looked at again only if the last round changed it, or something beside it.
+  const auto changed = [&](const Fragment& f) {
+    constexpr int kBlock = LightSignal::kBlock;
+    const int x1 = std::min(f.x + f.width(), g.width - 1), y1 = std::min(f.y + f.width(), g.height - 1);
+    for (int y = std::max(f.y - 1, 0) & -kBlock; y <= y1; y += kBlock)
+      for (int x = std::max(f.x - 1, 0) & -kBlock; x <= x1; x += kBlock)
+        if (signal.round_at(x, y) + 1 == round) return true;
+    return false;
+  };
   std::size_t kept = 0;
   for (const Fragment& f : progress.done) {
+    if (round > 1 && !changed(f)) {
+      progress.done[kept++] = f;
+      continue;
+    }
     const int w = f.width();
     // All or nothing by 16 rays may be nearly so: what lies beside it tells.
     const float own = value_at(f.x, f.y);

@@ -13,7 +13,7 @@ struct FragmentsSettings {
   enum class Signal { variant, ratio, irradiance };
   enum class Switch { variant, off, on };
   enum class Depth { plane, relative };
-  enum class Jitter { hash, blue };
+  enum class Jitter { variant, hash, blue };
   enum class Show { picture, levels, gradients, rays, signal, curvature };
 
   Variant variant = Variant::sightline;
@@ -39,7 +39,7 @@ struct FragmentsSettings {
   Switch strict_threshold = Switch::variant;
   Switch extra_samples = Switch::variant;
   int nichols_threshold = 6;
-  Jitter jitter = Jitter::hash;
+  Jitter jitter = Jitter::variant;
   int edge_samples = 1;
   Show show = Show::picture;
 
@@ -103,7 +103,9 @@ struct FragmentsSettings {
           {.help = "three finest samples on the upper and left edge of stable fragments", .choices = {"variant", "off", "on"}});
     visit("nichols_threshold", &S::nichols_threshold,
           {.help = "rays of 64 by which neighbours may differ (refine=nichols)", .minimum = 0, .maximum = 64});
-    visit("jitter", &S::jitter, {.help = "how light points are moved from fragment to fragment", .choices = {"hash", "blue"}});
+    visit("jitter", &S::jitter,
+          {.help = "how light points are moved from fragment to fragment: by chance, or so that neighbours differ as much as they can",
+           .choices = {"variant", "hash", "blue"}});
     visit("edge_samples", &S::edge_samples,
           {.help = "camera rays a pixel on geometric edges (anti-aliasing); 1 = none", .minimum = 1, .maximum = 16});
     visit("show", &S::show,

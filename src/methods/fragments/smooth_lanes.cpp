@@ -1,5 +1,7 @@
 #include "methods/fragments/smooth_window.h"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "methods/fragments/smooth_lanes.cpp"
 #include "base/simd/targets.h"
@@ -70,7 +72,7 @@ struct Moments {
   V count, fine, sx, sy, sxx, sxy, syy, t, tx, ty, txx, txy, tyy, tt;
 };
 
-HWY_INLINE Moments gather(D d, const SmoothInput& input, int x, int y, int step, const Centre& centre) {
+HWY_NOINLINE Moments gather(D d, const SmoothInput& input, int x, int y, int step, const Centre& centre) {
   const DI di;
   const GBuffer& g = input.g;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.f), ridge = hn::Set(d, kRidge);
@@ -102,6 +104,46 @@ HWY_INLINE Moments gather(D d, const SmoothInput& input, int x, int y, int step,
     }
   }
   return m;
+}
+
+// The same where all pixels of the window are known to lie in the picture and on one surface.
+HWY_NOINLINE Moments gather_flat(D d, const SmoothInput& input, int x, int y, int step, V own) {
+  const DI di;
+  const GBuffer& g = input.g;
+  const V zero = hn::Zero(d), squares = hn::Set(d, 50 + kRidge);
+  Moments m = {hn::Set(d, kWhole), zero, zero, zero, squares, zero, squares, zero, zero, zero, zero, zero, zero, zero};
+  I fine = hn::Zero(di);
+  for (int j = -kRadius; j <= kRadius; ++j) {
+    const V fy = hn::Set(d, static_cast<float>(j));
+    for (int i = -kRadius; i <= kRadius; ++i) {
+      const Reader reader(g, x + i * step, y + j * step);
+      const V v = hn::Sub(reader.floats(input.signal.data()), own), fx = hn::Set(d, static_cast<float>(i));
+      const V vx = hn::Mul(v, fx), vy = hn::Mul(v, fy);
+      // A true lane is -1.
+      fine = hn::Sub(fine, hn::VecFromMask(di, hn::Eq(reader.bytes(input.level.data()), hn::Zero(di))));
+      m.t = hn::Add(m.t, v), m.tx = hn::Add(m.tx, vx), m.ty = hn::Add(m.ty, vy);
+      m.txx = hn::MulAdd(vx, fx, m.txx), m.txy = hn::MulAdd(vx, fy, m.txy), m.tyy = hn::MulAdd(vy, fy, m.tyy);
+      m.tt = hn::MulAdd(v, v, m.tt);
+    }
+  }
+  m.fine = hn::ConvertTo(d, fine);
+  return m;
+}
+
+// Whether all pixels up to `reach` around `count` pixels are flat, and in the picture.
+HWY_INLINE bool all_flat(const GBuffer& g, int x, int y, int count, int reach) {
+  const int x0 = x - reach, length = count + 2 * reach;
+  if (g.flat.empty() || x0 < 0 || x + count + reach > g.width || y - reach < 0 || y + reach >= g.height) return false;
+  std::uint64_t flat = ~std::uint64_t{0};
+  for (int row = y - reach; row <= y + reach; ++row) {
+    const std::uint8_t* bytes = g.flat.data() + g.at(x0, row);
+    for (int i = 0; i < length; i += 8) {
+      std::uint64_t some;
+      std::memcpy(&some, bytes + HWY_MIN(i, length - 8), sizeof some);
+      flat &= some;
+    }
+  }
+  return flat == 0x0101010101010101u;
 }
 
 HWY_INLINE V clamp01(D d, V v) { return hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, 1.f)); }
@@ -195,12 +237,14 @@ void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
       const Centre centre = {own, reader.vectors(g.position), reader.vectors(g.geometric_normal), reader.vectors(g.shading_normal),
                              hn::Mul(reach, reach)};
       const M active = hn::And(receives(d, reader, g), hn::RebindMask(d, inside));
+      const bool flat = n >= 4 && n <= count - k && all_flat(g, x + k, y, n, kRadius * step_of(widest));
       for (int step = 1; step <= step_of(3); step *= 2) {
         static_assert(step_of(0) == 1 && step_of(1) == 1 && step_of(2) == 2 && step_of(3) == 4 && narrowest_step(4) == 2);
         const M large = hn::RebindMask(d, hn::Gt(level, hn::Set(di, step == 4 ? 2 : 1)));
         const M lanes = step == 1 ? hn::AndNot(large, active) : hn::And(large, active);
         if (hn::AllFalse(d, lanes)) continue;
-        result = hn::IfThenElse(lanes, fitted(d, gather(d, input, x + k, y, step, centre), own, result), result);
+        const Moments moments = flat ? gather_flat(d, input, x + k, y, step, own) : gather(d, input, x + k, y, step, centre);
+        result = hn::IfThenElse(lanes, fitted(d, moments, own, result), result);
       }
     }
     if (k + n <= count) {

@@ -101,10 +101,10 @@ Refined refine(Stage& stage, const FragmentOptions& options, int channels) {
   std::vector<TileProgress> progress(stage.g.root_count());
   for (std::size_t root = 0; root < progress.size(); ++root)
     refiner.refine(stage.g, root, stage.geometry(root, options.geometry), 0, refined.signal, progress[root], stage.statistics);
-  for (int round = 0; round < options.border_rounds; ++round) {
-    for (TileProgress& p : progress) refiner.find_borders(stage.g, refined.signal, p);
+  for (int round = 1; round <= options.border_rounds; ++round) {
+    for (TileProgress& p : progress) refiner.find_borders(stage.g, refined.signal, round, p);
     for (std::size_t root = 0; root < progress.size(); ++root)
-      refiner.refine_borders(stage.g, root, 0, refined.signal, progress[root], stage.statistics);
+      refiner.refine_borders(stage.g, root, 0, round, refined.signal, progress[root], stage.statistics);
   }
   refined.counts = refiner.counts();
   return refined;
