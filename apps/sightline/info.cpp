@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "bake/bake_description.h"
 #include "base/core/error.h"
 #include "commands.h"
 #include "film/frame_file.h"
@@ -133,6 +137,28 @@ Json frame_json(const std::string& path, std::span<const std::byte> bytes) {
           {"identity", stored.identity.text}};
 }
 
+bool is_bake_file(const std::string& path) {
+  std::array<char, 64> first{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(first.data(), first.size());
+  return is_bake(std::as_bytes(std::span(first)).first(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0))));
+}
+
+Json bake_json(const std::string& path) {
+  const BakeDescription bake = describe_bake(path);
+  Json json = {{"file", path}, {"kind", "bake"}, {"bytes", bake.bytes}};
+  if (!bake.id.kind.empty()) {
+    json["of"] = bake.id.kind;
+    json["version"] = bake.id.version;
+    json["key"] = bake.id.key_text();
+    json["sections"] = Json::array();
+    for (const BakeDescription::Section& section : bake.sections)
+      json["sections"].push_back({{"name", section.name}, {"bytes", section.bytes}, {"damaged", section.damaged}});
+  }
+  json["damage"] = bake.damage.empty() ? Json() : Json(bake.damage);
+  return json;
+}
+
 Json builtin_json() {
   Json list = Json::array();
   for (const BuiltinScene& scene : builtin_scenes()) {
@@ -207,6 +233,7 @@ Json describe(const std::string& file, const LoadOptions& options, const std::ve
     apply_materials(scene, materials);
     return scene_json(file, scene);
   }
+  if (is_bake_file(file)) return bake_json(file);
   const std::vector<std::byte> bytes = read_file(file);
   if (bytes.size() >= 7 && std::memcmp(bytes.data(), "SLFRAME", 7) == 0) return frame_json(file, bytes);
   return picture_json(file);
@@ -237,6 +264,11 @@ int run_info(const CommandLine& line, Context& context) {
     all.push_back(json);
   }
   if (line.info.json) fmt::print("{}\n", (all.size() == 1 ? all.front() : all).dump(2, ' ', false, Json::error_handler_t::replace));
+  // What is left of a damaged bake has been shown; it is unreadable all the same.
+  for (const Json& json : all) {
+    if (json.value("kind", "") == "bake" && !json["damage"].is_null())
+      throw input_error(json["damage"].get<std::string>()).at(json["file"].get<std::string>());
+  }
   return kDone;
 }
 

@@ -216,6 +216,18 @@ BRDF = b"""# a paint
 1.5 1 1.2 0 20 20 20
 """
 
+def bake():
+    """Two sections; checksums are left to the target, which mends them."""
+    contents = {b"tables": bytes(range(200)), b"nodes": b"0123456789abcdef"}
+    at, table, body = 128 + 64 * len(contents), b"", b""
+    for name, content in contents.items():
+        padding = (at + len(content) + 127) // 64 * 64 - at - len(content)
+        table += struct.pack("<32sQQQQ", name, at, len(content), 0, 0)
+        body += content + bytes(padding)
+        at += len(content) + padding
+    return struct.pack("<8sIIQQQQII64s8x", b"SLBAKE\r\n", 1, len(contents), 0, at, 1, 2, 3, 0, b"square-lights.lights") + table + body
+
+
 SEEDS = {
     "image_png": {f"{depth}-{kind}.png": png(depth, kind) for depth, kind in ((8, 2), (8, 6), (16, 2), (8, 0), (1, 0), (2, 3), (8, 4))},
     "image_exr": {"none-float.exr": exr(0, 2), "zip-half.exr": exr(3, 1)},
@@ -229,6 +241,7 @@ SEEDS = {
     "ply": ply(),
     "frame": {"tiny.frame": frame()},
     "brdf": {"paint.brdf": BRDF},
+    "bake": {"two.bake": bake()},
 }
 
 
