@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "methods/square_lights/haar.h"
+#include "methods/square_lights/hemisphere_disk.h"
 #include "methods/square_lights/summed_visibility.h"
 
 namespace sightline::square_lights {
@@ -39,6 +41,17 @@ bool may_hide(const Vec3& receiver_center, float receiver_radius, const Vec3& oc
 }
 
 float scale_of(const Mat4& m) { return glm::length(Vec3(m[0])); }
+
+Coverage without_gradient(Coverage coverage) { return coverage == Coverage::gradient ? Coverage::average : coverage; }
+
+void make_room(std::size_t lights, FrameShading::Scratch& scratch) {
+  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
+    if (values->size() < lights) values->resize(lights);
+  }
+}
+
+// Lights that splitting may make of one.
+constexpr std::size_t kMostSplit = 8;
 
 // Light that grazes a vertex of a silhouette: its BRDF is looked up as nearly from the side.
 constexpr float kLeastCosine = 1e-3f;
@@ -76,6 +89,7 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
     for (const SquareLight& light : lights) {
       if (!is_black(light.radiance)) own.add(light);
     }
+    if (settings.split > 0 && choice.kind == LightChoice::Kind::count) cut_ = bake.tree().cut(choice.count);
     own.finish();
     world_lights_.turned_from(own, bake.world_from_environment());
   }
@@ -164,10 +178,12 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, Scratch&
   if (!receiver.planes) return;
   const Vec3 world = transform_point(receiver.world_from_object, position);
   for (const PlanarOccluder& plane : bake_.planes()) {
+    plane.see(world, scratch.plane);
     for (std::size_t i = 0; i < world_lights_.count; ++i) {
       if (!(scratch.visible[i] > 0)) continue;
-      const float d = plane.distance(world, {world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]});
       const float r_p = world_lights_.r[i] * plane_scale_;
+      const float d = scratch.plane.distance({world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]}, r_p);
+      if (d >= r_p) continue;
       if (combine)
         scratch.distance[i] = std::min(scratch.distance[i], d);
       else
@@ -182,9 +198,7 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
   const std::size_t n = lights.x.size();
   ++scratch.counts.receivers;
   if (n == 0) return Color(0);
-  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
-    if (values->size() < n) values->resize(n);
-  }
+  make_room(n, scratch);
   const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
   const bool gradients = coverage_ == Coverage::gradient && !combine;
   if (gradients && scratch.gradient_x.size() < n) scratch.gradient_x.resize(n), scratch.gradient_y.resize(n);
@@ -211,12 +225,30 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
   return radiance;
 }
 
+void FrameShading::see_listed(std::uint32_t o, const ReceiverTables& tables, Scratch& scratch) const {
+  const std::size_t n = scratch.local.x.size();
+  make_room(n, scratch);
+  std::fill_n(scratch.visible.begin(), n, 1.f);
+  if (tables.count > 0) {
+    scratch.turned.turned_from(scratch.local, Mat3(receivers_[o].object_from_world));
+    self_distances(tables, scratch.turned, std::span(scratch.distance).first(n), {}, {});
+    multiply_coverage(scratch.distance, {}, {}, scratch.turned, plane_scale_, without_gradient(coverage_), scratch.visible);
+  }
+}
+
+Color FrameShading::shade_listed(std::uint32_t o, const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const {
+  scratch.turned.turned_from(scratch.local, Mat3(receivers_[o].object_from_world));
+  std::size_t lit = 0;
+  const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), scratch.turned, scratch.visible, plane_scale_, lit);
+  scratch.counts.lights += lit;
+  return radiance;
+}
+
 Color FrameShading::lit_locally(std::uint32_t o, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position,
                                 const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const {
   if (bake_.sources().empty()) return Color(0);
-  const Receiver& receiver = receivers_[o];
   const ShadingObject& object = bake_.scene().objects()[o];
-  const Vec3 world = transform_point(receiver.world_from_object, position);
+  const Vec3 world = transform_point(receivers_[o].world_from_object, position);
   scratch.local.clear(), scratch.patch_distance.clear();
   for (const Source& source : bake_.sources()) {
     scratch.patches.resize(source.light.count());
@@ -227,39 +259,54 @@ Color FrameShading::lit_locally(std::uint32_t o, const VertexHit& hit, const Rec
     for (const PatchLight& patch : scratch.patches) scratch.local.add(patch.light), scratch.patch_distance.push_back(patch.distance);
   }
   scratch.local.finish();
-  const LightSet& lights = scratch.local;
-  const std::size_t n = lights.x.size();
-  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
-    if (values->size() < n) values->resize(n);
-  }
-  std::fill_n(scratch.visible.begin(), n, 1.f);
-  LightSet& turned = scratch.in_field;
-  turned.turned_from(lights, Mat3(receiver.object_from_world));
   const bool still = !object.moving && !object.deformable && !bake_.patch_coverage().empty();
+  see_listed(o, still ? ReceiverTables() : tables, scratch);
   if (still) {
-    std::fill_n(scratch.visible.begin(), lights.count, 0.f);
+    const std::size_t count = scratch.local.count;
+    std::fill_n(scratch.visible.begin(), count, 0.f);
     for (std::size_t j = 0; j < 3; ++j) {
       if (hit.weight[j] == 0) continue;
-      const std::uint8_t* coverage = bake_.patch_coverage().data() + (hit.vertex[j] - object.first) * lights.count;
-      for (std::size_t k = 0; k < lights.count; ++k) scratch.visible[k] += hit.weight[j] * static_cast<float>(coverage[k]) / 255;
+      const std::uint8_t* coverage = bake_.patch_coverage().data() + (hit.vertex[j] - object.first) * count;
+      for (std::size_t k = 0; k < count; ++k) scratch.visible[k] += hit.weight[j] * static_cast<float>(coverage[k]) / 255;
     }
-  } else if (tables.count > 0) {
-    self_distances(tables, turned, std::span(scratch.distance).first(n), {}, {});
-    multiply_coverage(scratch.distance, {}, {}, turned, plane_scale_, coverage_ == Coverage::gradient ? Coverage::average : coverage_,
-                      scratch.visible);
   }
-  const Color result = [&] {
-    if (!object.deformable) hide_locally(o, world, scratch);
-    turned.turned_from(lights, Mat3(receiver.object_from_world));
-    std::size_t lit = 0;
-    const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), turned, scratch.visible, plane_scale_, lit);
-    scratch.counts.lights += lit;
-    return radiance;
-  }();
-  return result;
+  if (!object.deformable) hide_listed(o, world, scratch);
+  return shade_listed(o, frame, wo, brdf, scratch);
 }
 
-void FrameShading::hide_locally(std::uint32_t o, const Vec3& world, Scratch& scratch) const {
+Color FrameShading::lit_split(std::uint32_t o, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
+                              const BrdfTable& brdf, Scratch& scratch) const {
+  const Mat3 object_from_environment = Mat3(receivers_[o].object_from_world) * bake_.world_from_environment();
+  const Vec3 world = transform_point(receivers_[o].world_from_object, position);
+  const BrdfTable::Slices slices = brdf.slices(above_surface(frame.to_local(wo)));
+  const auto list = [&](std::span<const std::int32_t> nodes) {
+    scratch.local.clear();
+    scratch.patch_distance.assign(nodes.size(), std::numeric_limits<float>::infinity());
+    for (const std::int32_t node : nodes) {
+      SquareLight light = bake_.tree().nodes()[static_cast<std::size_t>(node)].light;
+      light.center = bake_.world_from_environment() * light.center;
+      scratch.local.add(light);
+    }
+    scratch.local.finish();
+    see_listed(o, tables, scratch);
+    hide_listed(o, world, scratch);
+  };
+  const std::span<const std::int32_t> nodes = scratch.refiner.refine(
+      bake_.tree(), cut_, settings_.split, kMostSplit * cut_.size(), [&](std::span<const std::int32_t> asked, std::span<NodeTerm> terms) {
+        list(asked);
+        for (std::size_t k = 0; k < asked.size(); ++k) {
+          const MergeNode& node = bake_.tree().nodes()[static_cast<std::size_t>(asked[k])];
+          const Vec3 c = normalize_or(object_from_environment * node.light.center, Vec3(0, 0, 1));
+          const Vec2 p = disk_from_direction(frame.to_local(c));
+          terms[k] = node_term(node, scratch.visible[k], brdf.moments(slices, p, node.light.radius * plane_scale_));
+        }
+      });
+  list(nodes);
+  ++scratch.counts.receivers;
+  return shade_listed(o, frame, wo, brdf, scratch);
+}
+
+void FrameShading::hide_listed(std::uint32_t o, const Vec3& world, Scratch& scratch) const {
   const LightSet& lights = scratch.local;
   for (const Occluder& occluder : bake_.occluders()) {
     if (occluder.object == o) continue;
@@ -269,8 +316,8 @@ void FrameShading::hide_locally(std::uint32_t o, const Vec3& world, Scratch& scr
     // What lies beyond a light hides nothing of it.
     const float nearest = glm::length(center - world) - occluder.field.radius() * scale;
     if (std::none_of(scratch.patch_distance.begin(), scratch.patch_distance.end(), [&](float d) { return nearest < d; })) continue;
-    scratch.in_field.turned_from(lights, Mat3(field_from_world));
-    occluder_distances(occluder.field, occluder.field.samples(transform_point(field_from_world, world)), scratch.in_field.lanes(),
+    scratch.turned.turned_from(lights, Mat3(field_from_world));
+    occluder_distances(occluder.field, occluder.field.samples(transform_point(field_from_world, world)), scratch.turned.lanes(),
                        scratch.other);
     scratch.counts.occluder_tests += lights.count;
     for (std::size_t k = 0; k < lights.count; ++k) {
@@ -281,13 +328,20 @@ void FrameShading::hide_locally(std::uint32_t o, const Vec3& world, Scratch& scr
   }
   if (!receivers_[o].planes) return;
   for (const PlanarOccluder& plane : bake_.planes()) {
+    plane.see(world, scratch.plane);
     for (std::size_t k = 0; k < lights.count; ++k) {
       const Vec3 c(lights.x[k], lights.y[k], lights.z[k]);
       if (!(scratch.visible[k] > 0) || plane.along(world, c) >= scratch.patch_distance[k] * (1 - 1e-3f)) continue;
-      const float r_p = lights.r[k] * plane_scale_, d = plane.distance(world, c);
-      scratch.visible[k] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
+      const float r_p = lights.r[k] * plane_scale_, d = scratch.plane.distance(c, r_p);
+      if (d < r_p) scratch.visible[k] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
     }
   }
+}
+
+Color FrameShading::lit_from_afar(std::uint32_t o, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
+                                  const BrdfTable& brdf, Scratch& scratch) const {
+  return cut_.empty() ? lit(receivers_[o], tables, position, frame, wo, brdf, scratch)
+                      : lit_split(o, tables, position, frame, wo, brdf, scratch);
 }
 
 Color FrameShading::by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const {
@@ -330,7 +384,7 @@ Color FrameShading::shade_vertex(std::uint32_t i, Scratch& scratch) const {
   tables_of(object, own, 1, tables, scratch);
   const Frame3 frame = tables.count > 0 ? tables.frame[0] : vertex_frame(vertices.normal[i], vertices.tangent[i]);
   const Vec3 wo = towards_eye(receiver, vertices.position[i]);
-  return lit(receiver, tables, vertices.position[i], frame, wo, *brdf, scratch) +
+  return lit_from_afar(object, tables, vertices.position[i], frame, wo, *brdf, scratch) +
          lit_locally(object, own, tables, vertices.position[i], frame, wo, *brdf, scratch);
 }
 
@@ -344,7 +398,7 @@ Color FrameShading::shade_point(const VertexHit& hit, std::uint32_t object, std:
   const auto turn = [&](const Vec3& v) { return normalize_or(transform_vector(receiver.object_from_world, v), v); };
   const Frame3 local = frame_from_normal_tangent(turn(frame.normal), turn(frame.tangent));
   const Vec3 here = transform_point(receiver.object_from_world, position);
-  return lit(receiver, tables, here, local, turn(wo), *brdf, scratch) +
+  return lit_from_afar(object, tables, here, local, turn(wo), *brdf, scratch) +
          lit_locally(object, hit, tables, here, local, turn(wo), *brdf, scratch);
 }
 

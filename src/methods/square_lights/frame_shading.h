@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/view.h"
+#include "methods/square_lights/error_bound.h"
 #include "methods/square_lights/shade_lanes.h"
 #include "methods/square_lights/square_bake.h"
 #include "methods/square_lights/texel_visibility.h"
@@ -31,7 +32,9 @@ class FrameShading {
   /// Buffers of one thread.
   struct Scratch {
     AlignedVector<float> visible, distance, other, gradient_x, gradient_y;
-    LightSet local, in_field;
+    LightSet local, turned;  ///< lights listed for one receiver, in world space, and in another
+    CutRefiner refiner;
+    PlanarOccluder::Seen plane;
     std::vector<PatchLight> patches;
     std::vector<float> patch_distance;
     std::vector<Color> transport;
@@ -68,7 +71,14 @@ class FrameShading {
             const BrdfTable& brdf, Scratch& scratch) const;
   Color lit_locally(std::uint32_t object, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position, const Frame3& frame,
                     const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const;
-  void hide_locally(std::uint32_t object, const Vec3& world, Scratch& scratch) const;
+  // For lights listed in scratch.local, with how far away they are in scratch.patch_distance.
+  void see_listed(std::uint32_t object, const ReceiverTables& tables, Scratch& scratch) const;
+  void hide_listed(std::uint32_t object, const Vec3& world, Scratch& scratch) const;
+  Color shade_listed(std::uint32_t object, const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const;
+  Color lit_from_afar(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
+                      const BrdfTable& brdf, Scratch& scratch) const;
+  Color lit_split(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
+                  const BrdfTable& brdf, Scratch& scratch) const;
   void hide(const Receiver& receiver, const Vec3& position, Scratch& scratch) const;
   Color by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const;
   Vec3 towards_eye(const Receiver& receiver, const Vec3& position) const;
@@ -79,6 +89,7 @@ class FrameShading {
   float plane_scale_ = 0.70710678f;
   Coverage coverage_ = Coverage::parallel;
   LightSet world_lights_;
+  std::vector<std::int32_t> cut_;  ///< where lights are split at each receiver: what to start from
   std::vector<Receiver> receivers_;
   std::vector<std::uint32_t> object_of_vertex_;  ///< first vertex of each object, in order
   // lights=all and basis=haar

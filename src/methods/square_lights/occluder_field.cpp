@@ -103,7 +103,8 @@ void OccluderField::measure(const Context& context) {
       (*hidden)[i] = static_cast<float>(sum) / (static_cast<float>(most) * kTableCells);
     }
   });
-  hidden_ = std::move(hidden);
+  measured_ = std::move(hidden);
+  hidden_ = *measured_;
 }
 
 OccluderSamples OccluderField::samples(const Vec3& position) const {
@@ -140,10 +141,10 @@ OccluderSamples OccluderField::samples(const Vec3& position) const {
       result.turn[i] = turn * (kTableSize / (2 * scale[s]));
       result.code_unit[i] = corners[k].weight * unit[s] * kDistanceStep;
       result.cell_unit[i] = corners[k].weight * unit[s] * (2.f / kTableSize);
-      if (hidden_) hidden += corners[k].weight * share[s] * 4 * scale[s] * scale[s] * (*hidden_)[result.table[i]];
+      if (!hidden_.empty()) hidden += corners[k].weight * share[s] * 4 * scale[s] * scale[s] * hidden_[result.table[i]];
     }
   }
-  result.hidden_area = hidden_ ? hidden : rho > 1 ? kPi * here * here : 4;
+  result.hidden_area = !hidden_.empty() ? hidden : rho > 1 ? kPi * here * here : 4;
   const float half = rho > 1 ? 0.5f * std::asin(1 / rho) : 0;
   result.sin_half = rho > 1 ? std::sin(half) : 2;
   result.cos_half = std::cos(half);

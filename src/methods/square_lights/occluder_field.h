@@ -57,6 +57,9 @@ class OccluderField {
   OccluderField(const Vec3& center, float radius, const std::array<float, kShells>& zoom, std::span<const std::int8_t> tables);
   /// Finds how much of its disk each table hides, by which D is bounded; without it the bounding sphere's outline serves.
   void measure(const Context& context);
+  /// What measure() found earlier, by table, over memory of the caller.
+  void use_hidden(std::span<const float> hidden) { hidden_ = hidden; }
+  std::span<const float> hidden() const { return hidden_; }
 
   const Vec3& center() const { return center_; }
   float radius() const { return radius_; }
@@ -77,7 +80,8 @@ class OccluderField {
   float radius_ = 1;
   std::array<float, kShells> zoom_{};
   std::span<const std::int8_t> tables_;
-  std::shared_ptr<const std::vector<float>> hidden_;  ///< by table: hidden part of its square
+  std::span<const float> hidden_;  ///< by table: hidden part of its square
+  std::shared_ptr<const std::vector<float>> measured_;
 };
 
 /// Lights as structure of arrays, padded to kLanes with radius 0.

@@ -72,17 +72,28 @@ float PlanarOccluder::along(const Vec3& position, const Vec3& c) const {
   return t > 0 ? t : std::numeric_limits<float>::infinity();
 }
 
-float PlanarOccluder::distance(const Vec3& position, const Vec3& c) const {
+void PlanarOccluder::see(const Vec3& position, Seen& seen) const {
+  seen.out_.clear();
   const float height = glm::dot(normal_, position - corners_[0]);
-  if (height == 0) return kNoOccluder;
-  // Great circles through the edges; their normals point out of the polygon as seen from here.
+  if (height == 0) return;
   const float side = height > 0 ? 1.f : -1.f;
-  float outside = -10;
-  for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Vec3 out = side * normalize_or(glm::cross(corners_[i] - position, corners_[(i + 1) % corners_.size()] - position), Vec3(0));
-    outside = std::max(outside, std::asin(std::clamp(glm::dot(out, c), -1.f, 1.f)));
-  }
-  return outside * 0.70710678f;
+  for (std::size_t i = 0; i < corners_.size(); ++i)
+    seen.out_.push_back(side * normalize_or(glm::cross(corners_[i] - position, corners_[(i + 1) % corners_.size()] - position), Vec3(0)));
+}
+
+float PlanarOccluder::Seen::distance(const Vec3& c, float most) const {
+  if (out_.empty()) return most;
+  float outside = -1;
+  for (const Vec3& out : out_) outside = std::max(outside, glm::dot(out, c));
+  // An angle is no less than its sine.
+  if (outside * 0.70710678f >= most) return most;
+  return std::min(most, std::asin(std::min(outside, 1.f)) * 0.70710678f);
+}
+
+float PlanarOccluder::distance(const Vec3& position, const Vec3& c) const {
+  Seen seen;
+  see(position, seen);
+  return seen.distance(c, kNoOccluder);
 }
 
 }  // namespace sightline::square_lights

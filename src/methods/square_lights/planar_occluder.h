@@ -16,6 +16,17 @@ class PlanarOccluder {
   /// The hull of points that lie in one plane and whose `area` fills it; nothing for anything else.
   static std::optional<PlanarOccluder> fit(std::span<const Vec3> points, float area);
 
+  /// The polygon from one place: what many directions are asked about.
+  class Seen {
+   public:
+    /// As distance() has it, if less than `most`; else `most`.
+    float distance(const Vec3& c, float most) const;
+
+   private:
+    friend class PlanarOccluder;
+    std::vector<Vec3> out_;  ///< unit normals of the great circles through the edges, pointing out
+  };
+  void see(const Vec3& position, Seen& seen) const;
   /// Distance, in plane units at the pole of the disk (angle over root 2), of unit direction `c` from the polygon's outline as seen from
   /// `position`: positive outside, negative where the polygon hides c. kNoOccluder where it is seen edge on.
   float distance(const Vec3& position, const Vec3& c) const;

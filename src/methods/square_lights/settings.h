@@ -27,7 +27,7 @@ struct SquareLightsSettings {
   int vectors = 8;
   int occluder_vectors = 8;
   Tables tables = Tables::distance;
-  Combine combine = Combine::product;
+  Combine combine = Combine::distance;
   Coverage coverage = Coverage::parallel;
   int rays = 64;
   int occluder_rays = 64;

@@ -15,7 +15,7 @@ namespace sightline::square_lights {
 namespace {
 
 // Versions of what is stored; to be raised whenever the same input would give other bytes.
-constexpr std::uint32_t kLightsVersion = 1, kSelfVersion = 1, kFieldVersion = 1, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
+constexpr std::uint32_t kLightsVersion = 1, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
 // Points along an edge of a texel when an environment becomes a cube map.
 constexpr int kCubePoints = 16;
 
@@ -269,7 +269,9 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
       const Scene alone = object_scene(world.scene(), object);
       const std::unique_ptr<Tracer> tracer = make_embree_tracer(alone, world.textures(), {}, context);
       const AlignedVector<std::int8_t> tables = bake_occluder_field(*tracer, object.center, object.radius, options, rays_, context);
-      const std::vector<BakeSection> sections{bake_section("tables", whole_tables(tables))};
+      OccluderField field(object.center, object.radius, shell_zoom(options), whole_tables(tables));
+      field.measure(context);
+      const std::vector<BakeSection> sections{bake_section("tables", whole_tables(tables)), bake_section("hidden", field.hidden())};
       keep(sections);
     });
   };
@@ -285,8 +287,11 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
     hash.add(settings.occluder_vectors);
     occluder.held = store.get({"square-lights.occluder-field-pca", kFieldVersion, hash.key()}, context, [&](const auto& keep) {
       const std::shared_ptr<const BakeView> all = raw();
-      keep(sections_of(
-          CompressedTables::groups(all->array<std::int8_t>("tables"), field_segments(), kSegments, settings.occluder_vectors, context)));
+      const CompressedTables small =
+          CompressedTables::groups(all->array<std::int8_t>("tables"), field_segments(), kSegments, settings.occluder_vectors, context);
+      std::vector<BakeSection> sections = sections_of(small);
+      sections.push_back({"hidden", all->section("hidden")});
+      keep(sections);
     });
     occluder.compressed = compressed_from(*occluder.held, settings.occluder_vectors);
     bytes_ += occluder.compressed->bytes();
@@ -300,7 +305,9 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
   if (tables.size() != kFieldTables * kTableCells)
     throw input_error("square-lights: a stored occluder field has another size than expected");
   occluder.field = OccluderField(object.center, object.radius, shell_zoom(options), tables);
-  occluder.field.measure(context);
+  occluder.field.use_hidden(occluder.held->array<float>("hidden"));
+  if (occluder.field.hidden().size() != kFieldTables)
+    throw input_error("square-lights: a stored occluder field lacks what its tables hide");
   occluders_.push_back(std::move(occluder));
 }
 

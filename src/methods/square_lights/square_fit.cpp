@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 
 #include "base/math/frame.h"
 
@@ -19,8 +20,8 @@ constexpr float kStepsPerPoint = 2;
 /// Pattern searches end after so many rounds, or when steps are small against a point or against the half edge.
 constexpr int kMostTries = 12;
 constexpr float kLeastStep = 0.1f, kLeastRelativeStep = 0.06f;
-/// Largest square tried, by the square of the region's own solid angle.
-constexpr float kLargest = 1.6f;
+/// Smallest and largest square tried, by the square of the region's own solid angle.
+constexpr float kSmallest = 0.4f, kLargest = 1.6f;
 
 }  // namespace
 
@@ -113,7 +114,7 @@ SquareFitter::Best SquareFitter::best_half(const Vec3& center) {
   }
   // The least J over the nodes but the last, where all that lies beyond was put; about squares smaller than a point nothing is known.
   constexpr double kNone = 1e300;
-  const int first = std::max(1, static_cast<int>(std::ceil(0.4f * kStepsPerPoint)));
+  const int first = std::max({1, static_cast<int>(std::ceil(0.4f * kStepsPerPoint)), static_cast<int>(kSmallest * nominal / step)});
   double sum = 0, last = kNone;
   Best best{kNone, nominal};
   std::array<double, 3> around{kNone, kNone, kNone};
