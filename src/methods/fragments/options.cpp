@@ -53,7 +53,7 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   // Penumbrae that are smoothed need half the rays.
   const auto rays = [&](int by_variant) { return static_cast<std::uint32_t>(std::max(number(s.level0_rays, 0, by_variant), 16)); };
   o.finest = {rays(fast ? 16 : 64), rays(fast ? 16 : ours && probes ? 32 : 64), chosen(s.early_out, ours)};
-  const bool blue = s.jitter == S::Jitter::variant ? ours && probes : s.jitter == S::Jitter::blue;
+  const bool blue = s.jitter == S::Jitter::variant ? ours && !fast && probes : s.jitter == S::Jitter::blue;
   o.jitter = blue ? PointJitter::blue : PointJitter::hash;
   o.sparse_tests = chosen(s.early_out, ours) && probes && o.ratio;
   // Fragments that are compared with their neighbours have one value, that of their centre, and no additional samples.

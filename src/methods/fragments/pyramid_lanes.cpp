@@ -39,7 +39,8 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
     const M surface = hn::RebindMask(d, surface_bits);
     const V3 p = load3(d, g.position, here), ng = load3(d, g.geometric_normal, here), ns = load3(d, g.shading_normal, here);
     const V depth = hn::LoadU(d, g.depth.data() + here);
-    V bend = zero, step = zero, reach = zero;
+    V bend = zero, step = zero;
+    M uneven = hn::Lt(zero, zero);
     const auto compare = [&](std::size_t there, M valid) {
       const auto other_kind = kinds_at(there);
       const M other = hn::RebindMask(d, interpolated(other_kind)), same = hn::RebindMask(d, hn::Eq(kind, other_kind));
@@ -50,10 +51,10 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
       bend = hn::Add(bend, hn::IfThenElseZero(smooth, dot3(change, change)));
       const V3 towards = sub3(load3(d, g.position, there), p);
       const V from_plane = dot3(towards, ng), away = row.plane_distance ? from_plane : hn::Sub(hn::LoadU(d, g.depth.data() + there), depth);
-      // Squares of what flatness is about: how far the neighbour is, and how far from the tangent plane.
-      const V far = hn::Mul(dot3(towards, towards), hn::Set(d, 1 / (kFlatReach * kFlatReach)));
-      const V off = hn::Mul(hn::Mul(from_plane, from_plane), hn::Set(d, 1 / (kFlatStep * kFlatStep)));
-      reach = hn::Max(reach, hn::IfThenElseZero(valid, hn::Max(far, off)));
+      const V squared = dot3(towards, towards);
+      const M steep = hn::Gt(hn::Mul(from_plane, from_plane), hn::Mul(squared, hn::Set(d, kFlatSlope * kFlatSlope)));
+      const M far = hn::Gt(squared, hn::Mul(hn::Mul(depth, depth), hn::Set(d, kFlatReach * kFlatReach)));
+      uneven = hn::Or(uneven, hn::And(valid, hn::Or(steep, far)));
       step = hn::Max(step, hn::IfThenElseZero(smooth, hn::Div(hn::Abs(away), depth)));
       bend = hn::IfThenElse(broken, infinity, bend), step = hn::IfThenElse(broken, infinity, step);
     };
@@ -66,7 +67,7 @@ void Discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* HWY_R
     };
     hn::StoreU(as_bytes(hn::And(surface_bits, hn::FirstN(du, left))), bytes, any + i);
     if (!flat) continue;
-    const M even = hn::And(hn::Le(bend, hn::Set(d, kFlatBend * kFlatBend)), hn::Le(reach, hn::Mul(depth, depth)));
+    const M even = hn::AndNot(uneven, hn::Le(bend, hn::Set(d, kFlatBend * kFlatBend)));
     hn::StoreU(as_bytes(hn::And(surface_bits, hn::RebindMask(du, even))), bytes, flat + i);
   }
 }

@@ -20,8 +20,8 @@ struct DiscontinuityRow {
 /// Writes padded(count).
 void discontinuities(const GBuffer& g, const DiscontinuityRow& row, float* kappa, float* dz, std::uint8_t* any, std::uint8_t* flat);
 
-/// What makes a pixel flat: change of the normal, distance of neighbours from its tangent plane, and their distance, over depth. So little
-/// that sixteen steps from one flat pixel to the next do not leave a surface in the sense of smoothing.
-inline constexpr float kFlatBend = 2e-3f, kFlatStep = 5e-6f, kFlatReach = 0.02f;
+/// What makes a pixel flat: change of the normal, slope of the way to a neighbour against the tangent plane, and its length over depth. So
+/// little that sixteen steps from one flat pixel to the next do not leave a surface in the sense of smoothing.
+inline constexpr float kFlatBend = 0.02f, kFlatSlope = 2e-3f, kFlatReach = 0.02f;
 
 }  // namespace sightline

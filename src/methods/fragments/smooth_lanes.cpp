@@ -237,12 +237,12 @@ void SmoothRow(const SmoothInput& input, int x, int y, int count, float* out) {
       const Centre centre = {own, reader.vectors(g.position), reader.vectors(g.geometric_normal), reader.vectors(g.shading_normal),
                              hn::Mul(reach, reach)};
       const M active = hn::And(receives(d, reader, g), hn::RebindMask(d, inside));
-      const bool flat = n >= 4 && n <= count - k && all_flat(g, x + k, y, n, kRadius * step_of(widest));
       for (int step = 1; step <= step_of(3); step *= 2) {
         static_assert(step_of(0) == 1 && step_of(1) == 1 && step_of(2) == 2 && step_of(3) == 4 && narrowest_step(4) == 2);
         const M large = hn::RebindMask(d, hn::Gt(level, hn::Set(di, step == 4 ? 2 : 1)));
         const M lanes = step == 1 ? hn::AndNot(large, active) : hn::And(large, active);
         if (hn::AllFalse(d, lanes)) continue;
+        const bool flat = n >= 4 && n <= count - k && all_flat(g, x + k, y, n, kRadius * step);
         const Moments moments = flat ? gather_flat(d, input, x + k, y, step, own) : gather(d, input, x + k, y, step, centre);
         result = hn::IfThenElse(lanes, fitted(d, moments, own, result), result);
       }
