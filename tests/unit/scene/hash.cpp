@@ -88,6 +88,16 @@ TEST(SceneHash, ChangesWithEverythingThatChangesAPicture) {
       [](Scene& s) { s.cameras[0].projection = Camera::Projection::orthographic; },
       [](Scene& s) { s.cameras[0].screen_window = Vec4(-1, -1, 1, 1); },
       [](Scene& s) { s.nodes[0].rotation_track.times_s = {0}; },
+      [](Scene& s) { s.nodes[0].weights = {0.5f}; },
+      [](Scene& s) { s.nodes[0].weights_track.times_s = {0}; },
+      [](Scene& s) { s.skins.push_back({.name = "s", .joints = {NodeId(0)}}); },
+      [](Scene& s) { s.meshes[0].deformation = std::make_shared<Deformation>(); },
+      [](Scene& s) {
+        Deformation deformation;
+        deformation.targets.resize(1);
+        s.meshes[0].deformation = std::make_shared<Deformation>(deformation);
+      },
+      [](Scene& s) { s.environment = Environment{.mapping = EnvironmentMapping::cube}; },
       [](Scene& s) { s.media.push_back({}); },
       [](Scene& s) { s.hints.max_bounces = 3; }};
   std::set<std::uint64_t> hashes = {scene_hash(make_scene())};

@@ -31,8 +31,9 @@ void read_targets(Import& import, const JsonView& primitive, std::size_t vertex_
   if (!targets) return;
   for (std::size_t k = 0; k < targets->size(); ++k) {
     const JsonView target = targets->at(k);
-    import.document.charge(sizeof(MorphTarget), target.path());
+    import.document.charge(sizeof(MorphTarget) + target.path().size(), target.path());
     MorphTarget& morph = deformation.targets.emplace_back();
+    morph.name = target.path();
     morph.positions = read_displacements(import, target, "POSITION", vertex_count);
     morph.normals = read_displacements(import, target, "NORMAL", vertex_count);
     morph.tangents = read_displacements(import, target, "TANGENT", vertex_count);

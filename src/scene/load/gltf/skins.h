@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
+#include <vector>
 
 #include "scene/load/gltf/import.h"
 #include "scene/load/gltf/nodes.h"
