@@ -11,6 +11,7 @@
 
 #include "base/core/error.h"
 #include "session/material_choices.h"
+#include "session/surface_tangents.h"
 #include "shade/measured_file.h"
 
 namespace sightline {
@@ -220,6 +221,7 @@ std::vector<MaterialRequest> parse_materials(const std::vector<std::string>& tex
 
 void apply_materials(Scene& scene, const std::vector<MaterialRequest>& requests) {
   for (const MaterialRequest& request : requests) apply_material(scene, request);
+  if (!requests.empty()) add_missing_tangents(scene);
 }
 
 }  // namespace sightline

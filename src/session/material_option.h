@@ -35,7 +35,8 @@ MaterialRequest parse_material(std::string_view text, const std::filesystem::pat
 /// materials.
 void apply_material(Scene& scene, const MaterialRequest& request);
 
-/// Both for several, one after the other: what is wrong with the texts is found before a scene is read.
+/// Both for several, one after the other: what is wrong with the texts is found before a scene is read. Meshes that then look different
+/// turned about the normal get tangents if they have none.
 std::vector<MaterialRequest> parse_materials(const std::vector<std::string>& texts, const std::filesystem::path& data_directory);
 void apply_materials(Scene& scene, const std::vector<MaterialRequest>& requests);
 

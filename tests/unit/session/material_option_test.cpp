@@ -133,6 +133,37 @@ TEST(MaterialOption, GeometryWithoutAMaterialGetsOne) {
   EXPECT_EQ(scene.materials.size(), 1u);
 }
 
+TEST(MaterialOption, BrushedMeshesWithoutTangentsAreTurnedOnALathe) {
+  const auto ball = [] {
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = std::vector<Vec3>{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {-1, 0, -1}};
+    mesh.triangles = std::vector<UVec3>{{0, 2, 1}};
+    for (const Vec3& p : mesh.positions) mesh.bounds.add(p);
+    scene.meshes.push_back(mesh);
+    scene.instances.push_back({.mesh = MeshId(0)});
+    return scene;
+  };
+  Scene even = ball(), brushed = ball(), mapped = ball();
+  apply_materials(even, {parsed("ward")});
+  EXPECT_TRUE(even.meshes[0].tangents.empty());
+  apply_materials(brushed, {parsed("ward,alpha_y=0.5")});
+  const Mesh& mesh = brushed.meshes[0];
+  ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
+  const Vec3 center = mesh.bounds.center();
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3 tangent(mesh.tangents[i]), from_axis = mesh.positions[i] - center;
+    EXPECT_NEAR(glm::length(tangent), 1, 1e-6f);
+    EXPECT_EQ(tangent.y, 0);
+    EXPECT_NEAR(glm::dot(tangent, from_axis), 0, 1e-6f);
+  }
+  mapped.meshes[0].uvs = std::vector<Vec2>{{0, 0}, {1, 0}, {0, 1}, {0, 0}};
+  apply_materials(mapped, {parsed("conductor,alpha_v=0.5")});
+  // The only triangle's third corner is where u is 1.
+  const Vec3 along_u = glm::normalize(Vec3(0, 0, 1) - Vec3(1, 0, 0));
+  for (const std::size_t corner : {0u, 1u, 2u}) EXPECT_LT(glm::length(Vec3(mapped.meshes[0].tangents[corner]) - along_u), 1e-6f);
+}
+
 TEST(MaterialOption, EmissionAndMapsOfTheMaterialStay) {
   Scene scene = scene_of("builtin:cornell");
   Material& material = scene.materials[0];
