@@ -78,10 +78,10 @@ HWY_ATTR void SelfDistances(const ReceiverTables& tables, const LightSet& lights
       const V up = mix(q.c00, q.c10, q.tx), down = mix(q.c01, q.c11, q.tx);
       sum = hn::MulAdd(hn::Set(d, tables.weight[j]), hn::Mul(mix(up, down, q.ty), step), sum);
       if (gradient_x == nullptr || j > 0) continue;
-      hn::Store(hn::Mul(per_cell, mix(hn::Sub(q.c10, q.c00), hn::Sub(q.c11, q.c01), q.ty)), d, gradient_x + i);
-      hn::Store(hn::Mul(per_cell, hn::Sub(down, up)), d, gradient_y + i);
+      hn::StoreU(hn::Mul(per_cell, mix(hn::Sub(q.c10, q.c00), hn::Sub(q.c11, q.c01), q.ty)), d, gradient_x + i);
+      hn::StoreU(hn::Mul(per_cell, hn::Sub(down, up)), d, gradient_y + i);
     }
-    hn::Store(sum, d, distance + i);
+    hn::StoreU(sum, d, distance + i);
   }
 }
 
@@ -92,8 +92,8 @@ HWY_ATTR void MultiplyParallel(const float* distance, const LightSet& lights, fl
   const V to_edge = hn::Set(d, 2 * 0.70710678f * plane_scale), least = hn::Set(d, 1e-12f);
   for (std::size_t i = 0; i < lights.x.size(); i += hn::Lanes(d)) {
     const V edge = hn::Max(hn::Mul(hn::Load(d, lights.r.data() + i), to_edge), least);
-    const V covered = hn::Min(hn::Max(hn::Add(half, hn::Div(hn::Load(d, distance + i), edge)), zero), one);
-    hn::Store(hn::Mul(hn::Load(d, visible + i), covered), d, visible + i);
+    const V covered = hn::Min(hn::Max(hn::Add(half, hn::Div(hn::LoadU(d, distance + i), edge)), zero), one);
+    hn::StoreU(hn::Mul(hn::LoadU(d, visible + i), covered), d, visible + i);
   }
 }
 
@@ -151,7 +151,7 @@ HWY_ATTR Color Shade(const Frame3& frame, const BrdfTable::Slices& slices, const
   alignas(32) std::array<float, 4> total{};
   for (std::size_t i = 0; i < lights.x.size(); i += hn::Lanes(d)) {
     const V3 c{hn::Load(d, lights.x.data() + i), hn::Load(d, lights.y.data() + i), hn::Load(d, lights.z.data() + i)};
-    const V v = hn::Load(d, visible + i);
+    const V v = hn::LoadU(d, visible + i);
     if (hn::AllFalse(d, hn::Gt(v, zero))) continue;
     const V2 q = disk(d, to_local(d, frame, c));
     const V2 p{hn::MulSub(q.x, cosine, hn::Mul(q.y, sine)), hn::MulAdd(q.x, sine, hn::Mul(q.y, cosine))};
