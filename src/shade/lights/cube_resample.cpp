@@ -8,6 +8,7 @@
 
 #include "base/core/error.h"
 #include "base/parallel/parallel.h"
+#include "scene/materialize.h"
 #include "shade/cube_map.h"
 #include "shade/lights/environment_map.h"
 
@@ -92,6 +93,9 @@ Environment environment_as_cube(const Environment& environment, int size, const 
     throw usage_error(fmt::format("a cube map with faces of {0} x {0} texels is not possible", size))
         .remedy(fmt::format("choose a size from 1 to {}", kMaxCubeSize));
   }
+  // Colours twice while the picture is made, then the sampler's tables.
+  require_memory(context, kCubeFaces * static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size) * (2 * sizeof(Color) + 16),
+                 "the environment's cube map");
   Environment cube = environment;
   cube.mapping = EnvironmentMapping::cube;
   std::vector<Color> texels;
