@@ -18,8 +18,8 @@
 namespace sightline {
 
 struct FinestOptions {
-  std::uint32_t rays = 64;         ///< of pixels that geometry made so small: nothing smooths them
-  std::uint32_t smooth_rays = 32;  ///< of pixels on smooth surfaces, in penumbrae
+  std::uint32_t rays = 64;         ///< of pixels that geometry made so small, where they are many: nothing smooths them
+  std::uint32_t smooth_rays = 32;  ///< of all others
   bool early_out = true;           ///< a quarter of the rays first; done if all of them agree
 };
 

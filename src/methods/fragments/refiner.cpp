@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kConfirmLevel = 3;
 constexpr int kExtraLevel = 3;
+// Pixels that geometry made so small are lines here and there, or most of a picture: from this share of a root tile on they are the
+// picture.
+constexpr std::size_t kManyPixels = static_cast<std::size_t>(kRootSize) * kRootSize / 8;
 // By how much an additional sample may differ from its quadrant's: sampling noise where the light is partly seen, little where it is all
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
@@ -210,7 +213,8 @@ void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal)
 }
 
 void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
-  write_pixels(g, geometry_pixels_, options_.finest.rays, sample, signal, statistics);
+  const bool many = geometry_pixels_.size() > kManyPixels;
+  write_pixels(g, geometry_pixels_, many ? options_.finest.rays : options_.finest.smooth_rays, sample, signal, statistics);
   write_pixels(g, finest_, options_.finest.smooth_rays, sample, signal, statistics);
 }
 
