@@ -57,10 +57,12 @@ Json scene_json(const std::string& spec, const Scene& scene) {
   json["bytes"] = scene_bytes(scene);
   if (!bounds.is_empty()) json["bounds"] = {{"lower", vec(bounds.lower)}, {"upper", vec(bounds.upper)}};
   json["materials"] = Json::array();
-  for (const Material& material : scene.materials)
+  for (const Material& material : scene.materials) {
     json["materials"].push_back({{"name", material.name},
                                  {"model", name_of(static_cast<MaterialKind>(material.model.index()))},
                                  {"emissive", !is_black(material.emission.value)}});
+    if (const auto* measured = std::get_if<MeasuredMaterial>(&material.model)) json["materials"].back()["file"] = measured->file;
+  }
   json["images"] = Json::array();
   for (const ImageAsset& asset : scene.images) {
     Json entry = {{"name", asset.name}};
