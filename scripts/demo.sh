@@ -25,8 +25,15 @@ sightline=build/demo/apps/sightline/sightline
 out=out
 mkdir -p "$out"
 # The methods come from the program itself, so that a new one joins the demo by being registered.
-mapfile -t methods < <("$sightline" methods --json | python3 -c 'import json, sys
-for method in json.load(sys.stdin)["methods"]: print(method["name"])')
+list_methods() {
+  "$sightline" methods --json | python3 -c 'import json, sys
+for method in json.load(sys.stdin)["methods"]:
+    if sys.argv[1] == "all" or not method["needs_bake"]: print(method["name"])' "$1"
+}
+mapfile -t all_methods < <(list_methods all)
+# What is precomputed for every vertex is for models of some ten thousand of them.
+mapfile -t without_bakes < <(list_methods without-bakes)
+methods=("${all_methods[@]}")
 
 pictures=()
 # show NAME SCENE SPP OPTION...: a picture with few samples by every method, beside the reference with many, and a report on each pair.
@@ -37,7 +44,7 @@ show() {
   "$sightline" render "$scene" "$@" --size 640x480 --spp "$((spp * 8))" --aov surface -o "$truth" -o "$out/$name-truth.png"
   for method in "${methods[@]}"; do
     # A method may refuse a scene that it does not suit; it says so, and the demo goes on.
-    if "$sightline" render "$scene" "$@" --size 640x480 --spp "$spp" --method "$method" -o "$out/$name-$method.exr" -o "$out/$name-$method.png"; then
+    if "$sightline" render "$scene" "$@" --size 640x480 --spp "$spp" --bake-dir "$out/bakes" --method "$method" -o "$out/$name-$method.exr" -o "$out/$name-$method.png"; then
       others+=("$out/$name-$method.exr")
     fi
   done
@@ -46,6 +53,8 @@ show() {
 }
 
 show cornell builtin:cornell 16
+show pair builtin:pair 4 --frame 10 --fps 30
+methods=("${without_bakes[@]}")
 show hairball builtin:room,content=builtin:hairball 4
 show isosurface builtin:isosurface 8
 show plant builtin:plant 8

@@ -26,7 +26,7 @@ const MethodInfo& SquareLightsMethod::info() const {
     MethodInfo i;
     i.name = "square-lights";
     i.help = "environments as a few squares, visibility by precomputed distances: moving objects, live materials";
-    i.citation = "RotatableSquareLights";
+    i.citation = "Xu2006";
     i.progressive = i.deterministic = i.needs_bake = true;
     i.lights = {LightKind::rectangle, LightKind::disk, LightKind::sphere, LightKind::mesh, LightKind::environment};
     i.materials = all_material_kinds();

@@ -138,6 +138,7 @@ void ShadingScene::add_mesh(const World& world, std::uint32_t index, ShadingObje
   const Instance& instance = scene.instances[index];
   const Mesh& mesh = scene.meshes[instance.mesh.index];
   const Mat3 normal_matrix = glm::transpose(glm::inverse(Mat3(object_from_member)));
+  const Mat3 member_from_object = glm::transpose(Mat3(object_from_member));  // of normals, up to scale
   const float winding = glm::determinant(Mat3(object_from_member)) < 0 ? -1.f : 1.f;
   const std::vector<Vec3> tangents = tangents_of(mesh);
   const auto material_of = [&](std::size_t triangle) {
@@ -152,7 +153,10 @@ void ShadingScene::add_mesh(const World& world, std::uint32_t index, ShadingObje
   const auto add = [&](std::uint32_t vertex, const Vec3& normal, std::uint32_t material) {
     vertices_.position.push_back(positions[vertex]);
     vertices_.normal.push_back(normal);
-    vertices_.tangent.push_back(transform_vector(object_from_member, tangents[vertex]));
+    // Where nothing else says how a vertex's frame is turned, its mesh does: squares then lie the same way wherever the instance is turned.
+    Vec3 tangent = tangents[vertex];
+    if (length_squared(tangent) == 0) tangent = frame_from_normal(normalize_or(member_from_object * normal, Vec3(0, 0, 1))).tangent;
+    vertices_.tangent.push_back(transform_vector(object_from_member, tangent));
     vertices_.material.push_back(material);
     geometric.emplace_back(0);
     return static_cast<std::uint32_t>(vertices_.size()) - 1;

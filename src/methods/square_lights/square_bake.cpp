@@ -119,7 +119,7 @@ std::uint64_t square_bake_bytes(const ShadingScene& scene, const SquareLightsSet
   std::uint64_t bytes = masks_bytes(scene, settings);
   std::size_t fields = 0;
   for (const ShadingObject& object : scene.objects()) {
-    if (!object.deformable) bytes += self_visibility_bytes(object.count);
+    if (!object.deformable && !needs_masks(settings)) bytes += self_visibility_bytes(object.count);
     fields += object.moving ? 1 : scene.any_moving() ? object.members.size() : 0;
   }
   if (!scene.any_moving()) fields = 0;
@@ -181,6 +181,8 @@ void SquareBake::make_tables(const World& world, const SquareLightsSettings& set
   for (std::size_t o = 0; o < tables_.size(); ++o) {
     const ShadingObject& object = scene_.objects()[o];
     if (object.deformable || object.count == 0) continue;
+    // Only what lies infinitely far, or lights something that moves, is asked of these tables.
+    if (cube_.texels.empty() && !object.moving) continue;
     const VertexSpans vertices = scene_.vertices().spans(object);
     BakeHash hash;
     add_geometry(hash, world.scene(), object), add_vertices(hash, vertices);
