@@ -93,20 +93,28 @@ void AddProjected(const std::int8_t* HWY_RESTRICT table, const float* HWY_RESTRI
   }
 }
 
-// Nothing is fused here, so that tables are the same on every machine.
 void ExpandTable(const std::uint16_t* HWY_RESTRICT components, const float* HWY_RESTRICT weights, std::size_t count,
                  std::int8_t* HWY_RESTRICT table) {
   const D d;
   const hn::Rebind<hwy::float16_t, D> d16;
-  const auto load = [&](std::size_t at) {
-    return hn::PromoteTo(d, hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(components + at)));
-  };
+  const auto* const halves = reinterpret_cast<const hwy::float16_t*>(components);
   const V most = hn::Set(d, 127.f), least = hn::Set(d, -127.f);
-  for (std::size_t i = 0; i < kTableCells; i += hn::Lanes(d)) {
-    V sum = load(i);
-    for (std::size_t j = 0; j < count; ++j) sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[j]), load((j + 1) * kTableCells + i)));
-    const auto codes = hn::NearestInt(hn::Min(hn::Max(sum, least), most));
-    hn::StoreU(hn::DemoteTo(D8(), hn::DemoteTo(hn::Rebind<std::int16_t, D>(), codes)), D8(), table + i);
+  constexpr std::size_t step = hn::MaxLanes(D());
+  static_assert(kTableCells % (2 * step) == 0);
+  // Two runs of cells at a time: one alone waits for each multiplication.
+  for (std::size_t i = 0; i < kTableCells; i += 2 * step) {
+    V a = hn::PromoteTo(d, hn::LoadU(d16, halves + i)), b = hn::PromoteTo(d, hn::LoadU(d16, halves + i + step));
+    for (std::size_t j = 0; j < count; ++j) {
+      const hwy::float16_t* const vector = halves + (j + 1) * kTableCells + i;
+      const V weight = hn::Set(d, weights[j]);
+      a = hn::MulAdd(weight, hn::PromoteTo(d, hn::LoadU(d16, vector)), a);
+      b = hn::MulAdd(weight, hn::PromoteTo(d, hn::LoadU(d16, vector + step)), b);
+    }
+    const auto store = [&](V sum, std::size_t at) {
+      const auto codes = hn::NearestInt(hn::Min(hn::Max(sum, least), most));
+      hn::StoreU(hn::DemoteTo(D8(), hn::DemoteTo(hn::Rebind<std::int16_t, D>(), codes)), D8(), table + at);
+    };
+    store(a, i), store(b, i + step);
   }
 }
 
