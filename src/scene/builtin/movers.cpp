@@ -15,7 +15,7 @@ namespace sightline::builtin {
 namespace {
 
 /// All motions close after this time: 120 frames at 30 frames a second.
-constexpr float kPeriod_s = 4;
+constexpr float kPeriodSeconds = 4;
 constexpr int kGroundSide = 100;
 
 /// A circle about a centre, in a plane that is tilted about +X, and a spin about the body's own axis.
@@ -31,10 +31,10 @@ struct Motion {
 
 /// Place and velocity at a time.
 void follow(const Motion& m, float time_s, Vec3& place, Vec3& velocity) {
-  const float speed = 2 * kPi * static_cast<float>(m.turns) / kPeriod_s, angle_rad = m.phase_rad + speed * time_s;
+  const float speed = 2 * kPi * static_cast<float>(m.turns) / kPeriodSeconds, angle_rad = m.phase_rad + speed * time_s;
   const float c = std::cos(angle_rad), s = std::sin(angle_rad);
   const Vec3 u(1, 0, 0), v(0, std::sin(m.tilt_rad), -std::cos(m.tilt_rad));
-  const float bob_speed = 4 * kPi / kPeriod_s, bob_angle_rad = bob_speed * time_s + 3 * m.phase_rad;
+  const float bob_speed = 4 * kPi / kPeriodSeconds, bob_angle_rad = bob_speed * time_s + 3 * m.phase_rad;
   place = m.center + m.radius * (c * u + s * v) + Vec3(0, m.bob * std::sin(bob_angle_rad), 0);
   velocity = m.radius * speed * (c * v - s * u) + Vec3(0, m.bob * bob_speed * std::cos(bob_angle_rad), 0);
 }
@@ -46,7 +46,7 @@ Node moving_node(std::string name, const Motion& motion) {
   constexpr int kKeys = 32;
   node.translation_track.interpolation = Interpolation::cubic_spline;
   for (int key = 0; key <= kKeys; ++key) {
-    const float time_s = kPeriod_s * static_cast<float>(key) / kKeys;
+    const float time_s = kPeriodSeconds * static_cast<float>(key) / kKeys;
     Vec3 place, velocity;
     follow(motion, time_s, place, velocity);
     node.translation_track.times_s.push_back(time_s);
@@ -56,7 +56,7 @@ Node moving_node(std::string name, const Motion& motion) {
   const int steps = 8 * std::abs(motion.spins);
   for (int step = 0; step <= steps; ++step) {
     const float half_angle_rad = kPi * static_cast<float>(motion.spins) * static_cast<float>(step) / static_cast<float>(steps);
-    node.rotation_track.times_s.push_back(kPeriod_s * static_cast<float>(step) / static_cast<float>(steps));
+    node.rotation_track.times_s.push_back(kPeriodSeconds * static_cast<float>(step) / static_cast<float>(steps));
     node.rotation_track.values.emplace_back(std::sin(half_angle_rad) * motion.axis, std::cos(half_angle_rad));
   }
   return node;
@@ -75,7 +75,7 @@ Scene staged(Scene scene, const Bounds& reach, bool ground) {
     const float edge = 2.2f * glm::length(reach.extent());
     add_mesh(scene, ground_mesh({reach.center().x, 0, reach.center().z}, edge, kGroundSide), add_diffuse(scene, "ground", Color(0.5f)));
   }
-  scene.animation_duration_s = kPeriod_s;
+  scene.animation_duration_s = kPeriodSeconds;
   scene.framing = reach;
   scene.cameras.push_back(framing_camera(reach));
   scene.hints.size_px = IVec2(800, 600);

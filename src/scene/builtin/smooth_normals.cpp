@@ -37,7 +37,7 @@ struct Cluster {
 /// Puts each vertex of a group to the nearest cluster within the crease angle. Clusters lie apart by about that angle, so there are but
 /// few of them however large the group.
 void share_sums(std::span<const std::uint32_t> group, std::span<Vec3> sums) {
-  const float least_cosine = std::cos(kCreaseAngle_rad);
+  const float least_cosine = std::cos(kCreaseAngleRad);
   std::vector<Cluster> clusters;
   for (const std::uint32_t vertex : group) {
     const Vec3 direction = normalize_or(sums[vertex], Vec3(0));
