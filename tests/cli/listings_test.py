@@ -94,6 +94,24 @@ class Info(ProgramTest):
         several = json.loads(self.ok("info", "--json", "a.png", "a.hdr").out)
         self.assertEqual([entry["size"] for entry in several], [[32, 24], [32, 24]])
 
+    def test_bakes(self):
+        self.ok("bake", "builtin:cornell", "--method", "square-lights", "--bake-dir", "bakes")
+        bakes = sorted(self.folder.glob("bakes/*.bake"))
+        self.assertTrue(bakes)
+        content = bakes[0].read_bytes()
+        (self.folder / "a.bake").write_bytes(content)
+        bake = json.loads(self.ok("info", "--json", "a.bake").out)
+        self.assertEqual((bake["kind"], bake["bytes"], bake["damage"]), ("bake", len(content), None))
+        self.assertTrue(bake["of"].startswith("square-lights."))
+        self.assertEqual(bakes[0].name, bake["of"] + "-" + bake["key"] + ".bake")
+        self.assertGreater(bake["sections"][0]["bytes"], 0)
+        # Damage is shown, and is malformed input.
+        (self.folder / "a.bake").write_bytes(content[:-200] + b"x" + content[-199:])
+        damaged = self.fails(3, "info", "--json", "a.bake", says="damaged")
+        self.assertIn(True, [section["damaged"] for section in json.loads(damaged.out)["sections"]])
+        (self.folder / "a.bake").write_bytes(content[:200])
+        self.fails(3, "info", "a.bake", says="cut short")
+
     def test_builtin_scenes(self):
         text = self.ok("info", "builtin:").out.decode()
         listing = json.loads(self.ok("info", "--json", "builtin:").out)
