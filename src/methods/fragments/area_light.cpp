@@ -20,6 +20,7 @@ AreaLight::Member member_of(const LightTable& lights, std::uint32_t entry) {
   AreaLight::Member member;
   member.entry = entry;
   member.polygon = flat_light_polygon(flat, emitter, kDiskPolygon);
+  member.surface = FlatSurface(flat, emitter);
   member.normal = flat.normal;
   member.sides = emitter.is(FlatEmitter::kTwoSided) ? EmitterSides::two : EmitterSides::one;
   member.radiance = emitter.radiance;

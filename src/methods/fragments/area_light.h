@@ -6,6 +6,7 @@
 
 #include "base/core/aligned.h"
 #include "base/math/vec.h"
+#include "shade/analytic/lobe_quadrature.h"
 #include "shade/analytic/polygon.h"
 #include "world/world.h"
 
@@ -17,6 +18,7 @@ struct AreaLight {
     std::uint32_t entry = 0;    ///< of the LightTable
     float probability = 1;      ///< of being chosen within the group
     std::vector<Vec3> polygon;  ///< disks are cut into polygons of the same area
+    FlatSurface surface;        ///< the same, not cut
     Vec3 normal{0, 0, 1};
     EmitterSides sides = EmitterSides::one;
     Color radiance{0};

@@ -34,7 +34,7 @@ void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& ligh
     add_irradiance(g, tile, signal, radiance);
     return;
   }
-  groups_.clear(), cut_.clear(), glossy_.clear();
+  groups_.clear(), cut_.clear(), glossy_.clear(), lobes_of_.clear();
   std::array<std::uint8_t, kLanes> cut;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += static_cast<int>(kLanes)) {
@@ -50,7 +50,7 @@ void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& ligh
         const bool lit = share[i] > 0 && (kind == PixelKind::diffuse || kind == PixelKind::analytic);
         const bool plain = lit && kind == PixelKind::diffuse && !cut[i];
         group.share[i] = plain ? share[i] : 0.f;
-        if (lit && !plain) (cut[i] ? cut_ : glossy_).push_back(static_cast<std::uint32_t>(at + i));
+        if (lit && !plain) sort_in(g, static_cast<std::uint32_t>(at + i), cut[i]);
       }
       groups_.push_back(group);
     }
@@ -58,6 +58,17 @@ void Composer::add(const GBuffer& g, const RootTile& tile, const AreaLight& ligh
   add_plain(g, light, radiance);
   add_cut(g, light, signal[0], radiance);
   add_glossy(g, light, signal[0], radiance);
+  add_lobes(g, light, signal[0], radiance);
+}
+
+void Composer::sort_in(const GBuffer& g, std::uint32_t at, bool cut) {
+  bool polygon = true;
+  if (glossy_term_ == GlossyTerm::quadrature && g.kind[at] == PixelKind::analytic) {
+    const AnalyticBsdf& form = glossy_point(g, at).form;
+    polygon = !is_black(form.diffuse);
+    if (form.has_specular) lobes_of_.push_back(at);
+  }
+  if (polygon) (cut ? cut_ : glossy_).push_back(at);
 }
 
 void Composer::add_irradiance(const GBuffer& g, const RootTile& tile, std::span<const float* const> signal, Vec3Batch& radiance) {
@@ -104,7 +115,8 @@ void Composer::add_cut(const GBuffer& g, const AreaLight& light, const float* si
       if (polygon_.size() < 3) continue;
       if (g.kind[at] == PixelKind::analytic) {
         const GlossyPoint& point = glossy_point(g, at);
-        const AnalyticLobes lobes = analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal));
+        AnalyticLobes lobes = analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal));
+        if (glossy_term_ == GlossyTerm::quadrature) lobes.specular = Color(0);
         const PolygonReflection reflected = reflect_polygon(polygon_, position, point.frame.normal, point.wo, lobes, member.sides);
         sightline::add(radiance, at, (reflected.diffuse + reflected.specular) * member.radiance * signal[at]);
         continue;
@@ -124,12 +136,36 @@ void Composer::add_glossy(const GBuffer& g, const AreaLight& light, const float*
     const GlossyPoint& point = glossy_point(g, glossy_[i]);
     store(position_, i, load(g.position, glossy_[i]));
     store(normal_, i, point.frame.normal), store(wo_, i, point.wo);
-    lobes_.set(i, analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal)));
+    AnalyticLobes lobes = analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal));
+    if (glossy_term_ == GlossyTerm::quadrature) lobes.specular = Color(0);
+    lobes_.set(i, lobes);
   }
   for (const AreaLight::Member& member : light.members) {
     reflect_polygon(member.polygon, {position_, normal_, wo_, lobes_}, n, diffuse_, specular_, member.sides);
     for (std::size_t i = 0; i < n; ++i)
       sightline::add(radiance, glossy_[i], (load(diffuse_, i) + load(specular_, i)) * member.radiance * signal[glossy_[i]]);
+  }
+}
+
+// GGX lobes by quadrature, of cut pixels too.
+void Composer::add_lobes(const GBuffer& g, const AreaLight& light, const float* signal, Vec3Batch& radiance) {
+  const std::size_t n = lobes_of_.size();
+  if (n == 0) return;
+  for (Vec3Batch* batch : {&position_, &normal_, &geometric_normal_, &wo_, &specular_}) batch->resize(n);
+  lobes_.resize(n), alpha_.resize(padded(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const GlossyPoint& point = glossy_point(g, lobes_of_[i]);
+    store(position_, i, load(g.position, lobes_of_[i])), store(geometric_normal_, i, load(g.geometric_normal, lobes_of_[i]));
+    store(normal_, i, point.frame.normal), store(wo_, i, point.wo);
+    alpha_[i] = point.form.ggx.alpha().x;
+    lobes_.set(i, analytic_lobes(point.form, glm::dot(point.wo, point.frame.normal)));
+  }
+  for (const AreaLight::Member& member : light.members) {
+    ggx_over_surface(member.surface, {position_, normal_, geometric_normal_, wo_, lobes_, alpha_}, n, specular_);
+    for (std::size_t i = 0; i < n; ++i) {
+      const AnalyticBsdf& form = glossy_point(g, lobes_of_[i]).form;
+      sightline::add(radiance, lobes_of_[i], specular_of(form, load(specular_, i)) * member.radiance * signal[lobes_of_[i]]);
+    }
   }
 }
 

@@ -28,7 +28,9 @@ EdgePass::EdgePass(const RenderJob& job, const View& view, const FragmentOptions
       seed_(context.seed),
       sampling_(sampling),
       samples_(static_cast<std::size_t>(options.edge_samples)),
-      workers_(static_cast<std::size_t>(context.thread_count())) {}
+      workers_(static_cast<std::size_t>(context.thread_count())) {
+  for (Worker& worker : workers_) worker.composer.set_glossy_term(options_.glossy);
+}
 
 void EdgePass::begin(const GBuffer& g) { found_.resize(g.root_count()); }
 

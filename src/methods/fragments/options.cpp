@@ -68,6 +68,7 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.penumbra_level = number(s.penumbra_level, -1, ours && !fast ? 2 : 8);
   o.border_rounds = o.ratio ? number(s.borders, -1, ours && !fast ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
+  o.glossy = s.glossy == S::Glossy::ltc ? GlossyTerm::ltc : GlossyTerm::quadrature;
   o.edge_samples = s.edge_samples;
   return o;
 }

@@ -1,6 +1,7 @@
 // The settings resolved: what a variant stands for, in the terms of the stages.
 #pragma once
 
+#include "methods/fragments/compose.h"
 #include "methods/fragments/finest_test.h"
 #include "methods/fragments/fragment.h"
 #include "methods/fragments/pyramid.h"
@@ -28,6 +29,7 @@ struct FragmentOptions {
   float border_jump = 0.25f;            ///< in shares of the light
   float border_jump_saturated = 0.05f;  ///< the same beside fragments that see all or nothing of it
   int nichols_threshold = 6;
+  GlossyTerm glossy = GlossyTerm::quadrature;
   int edge_samples = 1;  ///< camera rays a pixel on geometric edges
 };
 

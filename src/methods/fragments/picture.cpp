@@ -57,6 +57,7 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   fragments_.resize(g_.root_count()), progress_.resize(g_.root_count());
   const auto threads = static_cast<std::size_t>(context.thread_count());
   cameras_.resize(threads), refiners_.resize(threads), pyramids_.resize(threads), composers_.resize(threads);
+  for (Composer& composer : composers_) composer.set_glossy_term(options_.glossy);
 }
 
 // The first touch of a picture's arrays takes as long as some of the stages: threads share it.

@@ -14,6 +14,7 @@ struct FragmentsSettings {
   enum class Switch { variant, off, on };
   enum class Depth { plane, relative };
   enum class Jitter { variant, hash, blue };
+  enum class Glossy { quadrature, ltc };
   enum class Show { picture, levels, gradients, rays, signal, curvature };
 
   Variant variant = Variant::sightline;
@@ -40,6 +41,7 @@ struct FragmentsSettings {
   Switch extra_samples = Switch::variant;
   int nichols_threshold = 6;
   Jitter jitter = Jitter::variant;
+  Glossy glossy = Glossy::quadrature;
   int edge_samples = 1;
   Show show = Show::picture;
 
@@ -106,6 +108,9 @@ struct FragmentsSettings {
     visit("jitter", &S::jitter,
           {.help = "how light points are moved from fragment to fragment: by chance, or so that neighbours differ as much as they can",
            .choices = {"variant", "hash", "blue"}});
+    visit("glossy", &S::glossy,
+          {.help = "light of lobes without shadows: the lobe itself by quadrature, or linearly transformed cosines fitted to it",
+           .choices = {"quadrature", "ltc"}});
     visit("edge_samples", &S::edge_samples,
           {.help = "camera rays a pixel on geometric edges (anti-aliasing); 1 = none", .minimum = 1, .maximum = 16});
     visit("show", &S::show,
