@@ -253,6 +253,66 @@ class Bench(ProgramTest):
         self.assertIn("directional", run.err)
         self.assertEqual(json.loads(run.out)["table"], [])
 
+    SQUARES = ("bench", "square-lights", "--quick", "--size", "32x24", "--threads", 2, "--bake-dir", "kept")
+
+    def test_square_lights_on_what_stands_still(self):
+        run = self.ok(*self.SQUARES, "--view", "builtin:ground,content=hairball?triangles=600", "--part", "errors,bakes,edit,storage,beyond,pictures",
+                "--truth-samples", 16, "--json", "a.json", "--markdown", "a.md", "--html", "a.html")
+        # Settings of all candidates are known.
+        self.assertNotIn("left out", run.err)
+        results = self.json("a.json")
+        self.assertEqual((results["suite"], results["threads"], results["quick"], results["interrupted"]), ("square-lights", 2, True, False))
+        errors = results["errors"][0]
+        self.assertEqual((errors["size"], errors["cube"]), ([32, 24], 8))
+        squares = [row for row in errors["rows"] if row["basis"] == "squares"]
+        self.assertEqual([row["lights"] for row in squares], [10, 30, 60, 100, None])
+        self.assertEqual([row["lights"] for row in errors["rows"] if row["basis"] == "haar"], [20, 30, 60, 100])
+        for row in errors["rows"] + results["beyond"][0]["rows"] + results["storage"][0]["rows"]:
+            self.assertTrue(math.isfinite(row["l2"]), row)
+        self.assertLess(squares[3]["l2_tables"], squares[0]["l2_tables"])
+        self.assertEqual(squares[4]["l2_tables"], 0)
+        bakes = results["bakes"][0]
+        self.assertEqual(bakes["parts"], 0)
+        self.assertEqual({row["kind"].split(".")[1] for row in bakes["rows"]}, {"lights", "self-visibility"})
+        self.assertEqual([row["isotropic"] for row in results["edit"][0]["rows"]], [None, True, True, True, False])
+        storage = results["storage"][0]
+        self.assertEqual(storage["tables_of"], "vertices")
+        self.assertTrue(all(row["bytes"] > 0 for row in storage["rows"]), storage)
+        page = (self.folder / "a.html").read_text()
+        self.assertGreaterEqual(page.count("<svg"), 1)
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
+        for figure in ("Figure 6", "Figure 11", "Figure 15", "Figure 16"):
+            self.assertIn(figure, page)
+        self.assertIn("### Materials edited", (self.folder / "a.md").read_text())
+        self.assertGreater(len(list((self.folder / "kept").iterdir())), 3)
+
+    def test_square_lights_on_what_moves(self):
+        self.ok(*self.SQUARES, "--view", "builtin:ground,content=hairball?triangles=600,spin=2", "--part", "speed,moving", "--truth-samples", 16, "--json", "a.json",
+                "--strip", "a.png")
+        results = self.json("a.json")
+        speed, moving = results["speed"][0], results["moving"][0]
+        self.assertEqual((speed["parts"], speed["occlusion_rays"], moving["occlusion_rays"]), (1, 0, 0))
+        self.assertGreater(speed["frames_per_second"], 0)
+        self.assertEqual([row["frame"] for row in moving["rows"]], [0, 4, 8])
+        self.assertTrue(all(math.isfinite(row["flip"]) for row in moving["rows"]))
+        self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (3 * 16, 2 * 12))
+
+    def test_what_the_square_lights_suite_refuses(self):
+        self.fails(2, "bench", "square-light", says="square-lights")
+        self.fails(2, "bench", "square-lights", "--part", "error", says="errors")
+        self.fails(2, "bench", "square-lights", "--view", "armadilo-sky", says="armadillo-sky")
+        self.fails(2, "bench", "square-lights", "--ce", "8", says=("--ce", "visibility-cache"))
+        self.fails(2, "bench", "fragments", "--bake-dir", "x", says=("--bake-dir", "square-lights"))
+        for part, option in (("speed,edit", ("--strip", "a.png")), ("errors", ("--truth-samples", "4"))):
+            self.fails(2, "bench", "square-lights", "--part", part, *option, says=(option[0], "--part"))
+        self.assertEqual(self.files(), [])
+        run = self.ok("bench", "square-lights", "--view", "duck-sky", "--data", ".", "--json", "-", "--bake-dir", "")
+        self.assertIn("duck-sky", run.err)
+        self.assertEqual(json.loads(run.out)["errors"], [])
+        # A light without a table.
+        run = self.ok("bench", "square-lights", "--view", "builtin:textured", "--size", "32x24", "--quick", "--json", "-", "--bake-dir", "")
+        self.assertIn("left out", run.err)
+
 
 if __name__ == "__main__":
     main(globals())
