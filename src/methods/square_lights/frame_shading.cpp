@@ -45,9 +45,11 @@ float scale_of(const Mat4& m) { return glm::length(Vec3(m[0])); }
 Coverage without_gradient(Coverage coverage) { return coverage == Coverage::gradient ? Coverage::average : coverage; }
 
 void make_room(std::size_t lights, FrameShading::Scratch& scratch) {
-  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) {
-    if (values->size() < lights) values->resize(lights);
-  }
+  if (scratch.visible.size() >= lights) return;
+  for (AlignedVector<float>* values :
+       {&scratch.visible, &scratch.distance, &scratch.other, &scratch.near_x, &scratch.near_y, &scratch.near_z, &scratch.near_r})
+    values->resize(padded(lights));
+  scratch.near.resize(padded(lights));
 }
 
 // Lights that splitting may make of one.
@@ -116,20 +118,24 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
       use.occluder = &occluder;
       const Vec3 occluder_center = transform_point(occluder.world_from_field, occluder.field.center());
       const float occluder_radius = occluder.field.radius() * scale_of(occluder.world_from_field);
-      LightSet near;
+      bool any = false;
       for (std::size_t i = 0; i < world_lights_.count; ++i) {
-        const SquareLight light = world_lights_.light(i);
-        if (!may_hide(center, radius, occluder_center, occluder_radius, light)) continue;
-        near.add(light);
-        use.index.push_back(static_cast<std::uint32_t>(i));
+        use.may.push_back(may_hide(center, radius, occluder_center, occluder_radius, world_lights_.light(i)));
+        any |= use.may.back() != 0;
       }
-      if (use.index.empty()) continue;
-      near.finish();
+      if (!any) continue;
       const Mat4 field_from_world = glm::inverse(occluder.world_from_field);
-      use.lights.turned_from(near, Mat3(field_from_world));
       use.field_from_receiver = field_from_world * object.world_from_object;
+      use.turn = Mat3(use.field_from_receiver) / scale_of(use.field_from_receiver);
+      use.center = transform_point(receiver.object_from_world, occluder_center);
+      use.radius = occluder_radius * scale_of(receiver.object_from_world);
       receiver.occluders.push_back(std::move(use));
     }
+  }
+  // What a light reaches around its centre, as the fields have it.
+  for (std::size_t i = 0; i < world_lights_.count; ++i) {
+    const float sine = std::min(0.55f * world_lights_.r[i], 1.f);
+    reach_.push_back({1 - 2 * sine * sine, 2 * sine * std::sqrt(1 - sine * sine)});
   }
 }
 
@@ -161,17 +167,60 @@ void FrameShading::tables_of(std::uint32_t object, const VertexHit& hit, int cou
   }
 }
 
-void FrameShading::hide(const Receiver& receiver, const Vec3& position, Scratch& scratch) const {
+void FrameShading::list_active(const Receiver& receiver, const Vec3& normal, Scratch& scratch) const {
   const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
+  const LightSet& lights = receiver.lights;
+  scratch.active.clear();
+  for (std::size_t i = 0; i < lights.count; ++i) {
+    const float r_p = lights.r[i] * plane_scale_, horizon = 1 + r_p;
+    const float z = lights.x[i] * normal.x + lights.y[i] * normal.y + lights.z[i] * normal.z;
+    if (1 - z >= horizon * horizon) continue;
+    if (combine ? scratch.distance[i] > -0.70710678f * r_p : scratch.visible[i] > 0)
+      scratch.active.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+std::size_t FrameShading::list_near(const Receiver& receiver, const Use& use, const Vec3& position, Scratch& scratch) const {
+  const LightSet& lights = receiver.lights;
+  const Vec3 to = use.center - position;
+  const float distance = glm::length(to), sine = use.radius / distance;
+  const bool inside = !(sine < 1);
+  const float cosine = inside ? 0 : std::sqrt(1 - sine * sine);
+  std::size_t count = 0;
+  for (const std::uint32_t i : scratch.active) {
+    if (!use.may[i]) continue;
+    const Vec3 c(lights.x[i], lights.y[i], lights.z[i]);
+    // Outside the cones of light and occluder, both of which are narrower than half a sphere.
+    const Reach& reach = reach_[i];
+    if (!inside && reach.cosine > 0.1f && glm::dot(c, to) < distance * (cosine * reach.cosine - sine * reach.sine)) continue;
+    const Vec3 turned = use.turn * c;
+    scratch.near_x[count] = turned.x, scratch.near_y[count] = turned.y, scratch.near_z[count] = turned.z,
+    scratch.near_r[count] = lights.r[i];
+    scratch.near[count++] = i;
+  }
+  for (std::size_t k = count; k < padded(count); ++k) scratch.near_x[k] = scratch.near_y[k] = scratch.near_r[k] = 0, scratch.near_z[k] = 1;
+  return count;
+}
+
+void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Vec3& normal, Scratch& scratch) const {
+  const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
+  if (receiver.occluders.empty() && !receiver.planes) return;
+  list_active(receiver, normal, scratch);
   for (const Use& use : receiver.occluders) {
+    const std::size_t count = list_near(receiver, use, position, scratch);
+    if (count == 0) continue;
     const OccluderSamples samples = use.occluder->field.samples(transform_point(use.field_from_receiver, position));
-    occluder_distances(use.occluder->field, samples, use.lights.lanes(), scratch.other);
-    scratch.counts.occluder_tests += use.lights.count;
-    for (std::size_t k = 0; k < use.index.size(); ++k) {
-      const std::uint32_t i = use.index[k];
+    const std::size_t n = padded(count);
+    occluder_distances(use.occluder->field, samples,
+                       {std::span(scratch.near_x).first(n), std::span(scratch.near_y).first(n), std::span(scratch.near_z).first(n),
+                        std::span(scratch.near_r).first(n)},
+                       scratch.other);
+    scratch.counts.occluder_tests += count;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = scratch.near[k];
       if (combine)
         scratch.distance[i] = std::min(scratch.distance[i], scratch.other[k]);
-      else if (const float d = scratch.other[k], r_p = use.lights.r[k] * plane_scale_; d < 0.70710678f * r_p)
+      else if (const float d = scratch.other[k], r_p = scratch.near_r[k] * plane_scale_; d < r_p)
         scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
     }
   }
@@ -179,8 +228,7 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, Scratch&
   const Vec3 world = transform_point(receiver.world_from_object, position);
   for (const PlanarOccluder& plane : bake_.planes()) {
     plane.see(world, scratch.plane);
-    for (std::size_t i = 0; i < world_lights_.count; ++i) {
-      if (!(scratch.visible[i] > 0)) continue;
+    for (const std::uint32_t i : scratch.active) {
       const float r_p = world_lights_.r[i] * plane_scale_;
       const float d = scratch.plane.distance({world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]}, r_p);
       if (d >= r_p) continue;
@@ -212,12 +260,12 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
     self_distances(tables, lights, std::span(scratch.distance).first(n), gx, gy);
   }
   if (combine) {
-    hide(receiver, position, scratch);
+    hide(receiver, position, frame.normal, scratch);
     multiply_coverage(scratch.distance, {}, {}, lights, plane_scale_, coverage_, scratch.visible);
   } else {
     if (tables.count > 0 && settings_.tables == SquareLightsSettings::Tables::distance)
       multiply_coverage(scratch.distance, gx, gy, lights, plane_scale_, coverage_, scratch.visible);
-    hide(receiver, position, scratch);
+    hide(receiver, position, frame.normal, scratch);
   }
   std::size_t lit = 0;
   const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), lights, scratch.visible, plane_scale_, lit);

@@ -32,6 +32,8 @@ class FrameShading {
   /// Buffers of one thread.
   struct Scratch {
     AlignedVector<float> visible, distance, other, gradient_x, gradient_y;
+    std::vector<std::uint32_t> active, near;  ///< lights worth looking at, by number
+    AlignedVector<float> near_x, near_y, near_z, near_r;
     LightSet local, turned;  ///< lights listed for one receiver, in world space, and in another
     CutRefiner refiner;
     PlanarOccluder::Seen plane;
@@ -55,8 +57,10 @@ class FrameShading {
   struct Use {
     const Occluder* occluder = nullptr;
     Mat4 field_from_receiver{1};
-    LightSet lights;                   ///< those that it may hide, in the field's space
-    std::vector<std::uint32_t> index;  ///< of each in the receiver's set
+    Mat3 turn{1};                   ///< the same for directions
+    Vec3 center{0};                 ///< of its sphere, in the receiver's space
+    float radius = 0;               ///< there
+    std::vector<std::uint8_t> may;  ///< by light: whether any vertex of the receiver may lose some of it
   };
   struct Receiver {
     Mat4 world_from_object{1}, object_from_world{1};
@@ -79,7 +83,11 @@ class FrameShading {
                       const BrdfTable& brdf, Scratch& scratch) const;
   Color lit_split(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
                   const BrdfTable& brdf, Scratch& scratch) const;
-  void hide(const Receiver& receiver, const Vec3& position, Scratch& scratch) const;
+  /// Lights that are above the horizon and not hidden already: scratch.active.
+  void list_active(const Receiver& receiver, const Vec3& normal, Scratch& scratch) const;
+  /// Those of them that come near an occluder's cone, turned into its space: scratch.near.
+  std::size_t list_near(const Receiver& receiver, const Use& use, const Vec3& position, Scratch& scratch) const;
+  void hide(const Receiver& receiver, const Vec3& position, const Vec3& normal, Scratch& scratch) const;
   Color by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const;
   Vec3 towards_eye(const Receiver& receiver, const Vec3& position) const;
 
@@ -88,7 +96,12 @@ class FrameShading {
   bool orthographic_ = false;
   float plane_scale_ = 0.70710678f;
   Coverage coverage_ = Coverage::parallel;
+  /// Of the cone around a light's centre within which an occluder may touch its square.
+  struct Reach {
+    float cosine, sine;
+  };
   LightSet world_lights_;
+  std::vector<Reach> reach_;
   std::vector<std::int32_t> cut_;  ///< where lights are split at each receiver: what to start from
   std::vector<Receiver> receivers_;
   std::vector<std::uint32_t> object_of_vertex_;  ///< first vertex of each object, in order

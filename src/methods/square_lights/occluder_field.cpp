@@ -64,7 +64,14 @@ Vec2 least_turn(const Frame3& frame, const Vec3& to) {
 
 }  // namespace
 
-float shell_radius(int k) { return kInnerShell * std::pow(kOuterShell / kInnerShell, static_cast<float>(k) / (kShells - 1)); }
+float shell_radius(int k) {
+  static const std::array<float, kShells> radii = [] {
+    std::array<float, kShells> r;
+    for (int i = 0; i < kShells; ++i) r[i] = kInnerShell * std::pow(kOuterShell / kInnerShell, static_cast<float>(i) / (kShells - 1));
+    return r;
+  }();
+  return radii[static_cast<std::size_t>(k)];
+}
 
 Vec3 shell_direction(std::size_t i) {
   const std::size_t texel = i % kShellPoints;
@@ -145,9 +152,9 @@ OccluderSamples OccluderField::samples(const Vec3& position) const {
     }
   }
   result.hidden_area = !hidden_.empty() ? hidden : rho > 1 ? kPi * here * here : 4;
-  const float half = rho > 1 ? 0.5f * std::asin(1 / rho) : 0;
-  result.sin_half = rho > 1 ? std::sin(half) : 2;
-  result.cos_half = std::cos(half);
+  // 2 sin² (a / 2) = 1 - cos a, with sin a = 1 / rho.
+  result.sin_half = rho > 1 ? 0.70710678f * here : 2;
+  result.cos_half = rho > 1 ? std::sqrt(1 - 0.5f * here * here) : 1;
   return result;
 }
 
