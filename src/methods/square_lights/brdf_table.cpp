@@ -8,6 +8,7 @@
 
 #include "base/parallel/parallel.h"
 #include "methods/square_lights/hemisphere_disk.h"
+#include "methods/square_lights/sharp_lobe.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -43,7 +44,10 @@ std::optional<BsdfSample> sample_some(const Bsdf& bsdf, const Vec3& wo, int i) {
 /// f cos by point of the disk for one view.
 class Slice {
  public:
-  Slice(const Bsdf& bsdf, const Vec3& wo, int deepest) : bsdf_(bsdf), wo_(wo), deepest_(deepest) { bsdf_.prepare(wo); }
+  Slice(const Bsdf& bsdf, const SharpLobe* lobe, const Vec3& wo, int deepest) : bsdf_(bsdf), wo_(wo), deepest_(deepest) {
+    bsdf_.prepare(wo);
+    if (lobe != nullptr && !lobe->empty()) lobe_ = lobe->view(wo);
+  }
 
   /// Means over cells; with `mirrored` the lower half is that of the upper.
   void cells(bool mirrored, Cells& means) {
@@ -68,7 +72,9 @@ class Slice {
 
   Color value(const Vec2& p) const {
     if (!(glm::dot(p, p) < 1)) return Color(0);
-    const Color f = bsdf_.evaluate(wo_, direction_from_disk(p)).f_cos;
+    const Vec3 wi = direction_from_disk(p);
+    Color f = bsdf_.evaluate(wo_, wi).f_cos;
+    if (lobe_) f -= SharpLobe::value(*lobe_, wi);
     return is_finite(f) ? f : Color(0);
   }
   const Color& at(int x, int y) const { return lattice_[static_cast<std::size_t>((y + 1) * kStride + x + 1)]; }
@@ -82,7 +88,7 @@ class Slice {
       for (int x = 0; x < kPoints; ++x) {
         const Color v = value({-1 + (static_cast<float>(x) + 0.5f) * kStep, -1 + (static_cast<float>(y) + 0.5f) * kStep});
         at(x, y) = v;
-        sum += v;
+        sum += glm::abs(v);
       }
     }
     if (mirrored) {
@@ -98,7 +104,7 @@ class Slice {
       if (!sample || !(sample->wi.z > 0)) continue;
       Vec2 p = disk_from_direction(sample->wi);
       if (mirrored) p.y = -std::fabs(p.y);
-      seeds_[seed_count_++] = {p, max_component(value(p))};
+      seeds_[seed_count_++] = {p, greatest_of(value(p))};
     }
   }
 
@@ -111,10 +117,10 @@ class Slice {
       if (i == 0 || i == 1) ring += at(2 * x - 1, 2 * y + i) + at(2 * x + 2, 2 * y + i);
     }
     const Vec2 center{-1 + (static_cast<float>(x) + 0.5f) * kCellSize, -1 + (static_cast<float>(y) + 0.5f) * kCellSize};
-    const float tolerance = kTolerance * (max_component(mean) + mean_);
+    const float tolerance = kTolerance * (greatest_of(mean) + mean_);
     // For a function that bends evenly the mean of the four is off by a sixteenth of what it differs from the ring around them; half of
     // that is left for those that do not.
-    const float bend = max_component(glm::abs(mean - ring / 12.f)) / 8;
+    const float bend = greatest_of(mean - ring / 12.f) / 8;
     if (bend <= tolerance && !hides_peak(center, kCellSize / 2, own, tolerance)) return mean;
     return refined(center, kCellSize / 2, own, 1, tolerance);
   }
@@ -122,7 +128,7 @@ class Slice {
   /// Whether a direction within the square was chosen whose value its points do not come near.
   bool hides_peak(const Vec2& center, float half, const std::array<Color, 4>& values, float tolerance) const {
     float greatest = 0;
-    for (const Color& v : values) greatest = std::max(greatest, max_component(v));
+    for (const Color& v : values) greatest = std::max(greatest, greatest_of(v));
     for (std::size_t i = 0; i < seed_count_; ++i) {
       const Vec2 d = glm::abs(seeds_[i].p - center);
       if (d.x <= half && d.y <= half && seeds_[i].value > 1.5f * greatest + tolerance) return true;
@@ -141,16 +147,18 @@ class Slice {
       for (std::size_t k = 0; k < 4; ++k) inner[k] = value(middle + quarter_half / 2 * corner(k));
       Color mean = 0.25f * (inner[0] + inner[1] + inner[2] + inner[3]);
       if (depth < deepest_ &&
-          (max_component(glm::abs(mean - values[q])) * share > tolerance / 4 || hides_peak(middle, quarter_half, inner, tolerance))) {
+          (greatest_of(mean - values[q]) * share > tolerance / 4 || hides_peak(middle, quarter_half, inner, tolerance))) {
         mean = refined(middle, quarter_half, inner, depth + 1, tolerance);
       }
       sum += mean;
     }
     return 0.25f * sum;
   }
+  static float greatest_of(const Color& c) { return max_component(glm::abs(c)); }
   static Vec2 corner(std::size_t q) { return {q % 2 ? 1.f : -1.f, q / 2 ? 1.f : -1.f}; }
 
   Bsdf bsdf_;
+  std::optional<SharpLobe::View> lobe_;
   Vec3 wo_;
   int deepest_;
   float mean_ = 0;  // of f cos over the disk
@@ -228,8 +236,9 @@ bool is_isotropic(const Bsdf& bsdf) {
   return std::visit([](const auto& model) { return model.is_isotropic(); }, bsdf.model());
 }
 
-BrdfTable BrdfTable::build(const Bsdf& bsdf, int samples, const Context& context) {
+BrdfTable BrdfTable::build(const Bsdf& bsdf, int samples, const Context& context, const SharpLobe* lobe) {
   BrdfTable table;
+  table.signed_ = lobe != nullptr && !lobe->empty();
   table.isotropic_ = is_isotropic(bsdf);
   const int deepest = std::max(1, static_cast<int>(std::ceil(std::log2(std::max(samples, 1)))) - 1 + kExtraDepth);
   if (table.isotropic_) {
@@ -238,7 +247,7 @@ BrdfTable BrdfTable::build(const Bsdf& bsdf, int samples, const Context& context
       Cells means;
       for (std::size_t view = begin; view < end; ++view) {
         const float angle = kHalfPi * static_cast<float>(view) / (kViews - 1), cosine = std::max(std::cos(angle), kLeastCosine);
-        Slice(bsdf, direction_from_disk({std::sqrt(1 - cosine), 0}), deepest).cells(true, means);
+        Slice(bsdf, lobe, direction_from_disk({std::sqrt(1 - cosine), 0}), deepest).cells(true, means);
         sum_areas(means, table.corners_.data() + view * kSliceFloats);
       }
     });
@@ -252,7 +261,7 @@ BrdfTable BrdfTable::build(const Bsdf& bsdf, int samples, const Context& context
     for (std::size_t view = begin; view < end; ++view) {
       const int x = static_cast<int>(view) % edge, y = static_cast<int>(view) / edge;
       if (!is_read(x, y)) continue;
-      Slice(bsdf, view_direction(x, y), deepest).cells(false, means);
+      Slice(bsdf, lobe, view_direction(x, y), deepest).cells(false, means);
       for (int k = 0; k < (mirrored ? 4 : 1); ++k) {
         const int there_x = k % 2 ? kViews - 1 - x : x, there_y = k / 2 ? kViews - 1 - y : y;
         const Cells turned = k == 0 ? means : mirror(means, k % 2 != 0, k / 2 != 0);
@@ -309,11 +318,14 @@ Vec4 BrdfTable::mean_of_four(const Slices& slices, const Vec2& p, float r_p) {
     };
     sum += slices.weight[s] * (corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0]));
   }
-  // Differences of corners may leave a trace of rounding below 0.
-  return glm::max(sum / (4 * half * half), Vec4(0));
+  return sum / (4 * half * half);
 }
 
-Color BrdfTable::mean(const Slices& slices, const Vec2& p, float r_p) const { return Color(mean_of_four(slices, p, r_p)); }
+Color BrdfTable::mean(const Slices& slices, const Vec2& p, float r_p) const {
+  const Color mean(mean_of_four(slices, p, r_p));
+  // Differences of corners may leave a trace of rounding below 0.
+  return signed_ ? mean : glm::max(mean, Color(0));
+}
 
 Moments BrdfTable::moments(const Slices& slices, const Vec2& p, float r_p) const {
   const Vec4 mean = mean_of_four(slices, p, r_p);

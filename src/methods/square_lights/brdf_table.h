@@ -12,6 +12,8 @@
 
 namespace sightline::square_lights {
 
+class SharpLobe;  // sharp_lobe.h
+
 /// 32 x 32 cells over [-1, 1]² of the disk; a table holds 33 x 33 corners, each the integral over all cells left of and above it, as four
 /// floats (red, green, blue, square of the luminance), so that two neighbours along a row are one load.
 class BrdfTable {
@@ -26,7 +28,8 @@ class BrdfTable {
   /// views of the disk. Cells are means, zero outside the disk: of 2 x 2 points where the function is smooth, of about `samples` x
   /// `samples` where it bends, of up to 8 times as many along an edge around peaks, which directions chosen by the BSDF itself find. Delta
   /// lobes are left out; light from below the surface too. Throws Error{interrupted} when cancelled.
-  static BrdfTable build(const Bsdf& bsdf, int samples, const Context& context);
+  /// Without `lobe`, which is added by formula: tables are then of the difference and may be negative.
+  static BrdfTable build(const Bsdf& bsdf, int samples, const Context& context, const SharpLobe* lobe = nullptr);
 
   bool isotropic() const { return isotropic_; }
   std::size_t bytes() const { return corners_.size() * sizeof(float); }
@@ -52,7 +55,7 @@ class BrdfTable {
  private:
   static Vec4 mean_of_four(const Slices& slices, const Vec2& p, float r_p);
 
-  bool isotropic_ = true;
+  bool isotropic_ = true, signed_ = false;
   AlignedVector<float> corners_;  ///< [view][row][column][4]; rows follow p.y, columns p.x
 };
 
