@@ -20,6 +20,7 @@ class View : public BakeView {
   const BakeId& id() const override { return header_.id; }
   std::vector<std::string> section_names() const override {
     std::vector<std::string> names;
+    names.reserve(header_.sections.size());
     for (const auto& section : header_.sections) names.push_back(section.name);
     return names;
   }

@@ -117,7 +117,8 @@ DiskGrid::DiskGrid(int n) : n_(n), inside_(static_cast<std::size_t>(n) * n) {
 Vec2 DiskGrid::point(std::size_t i) const {
   const std::size_t n = static_cast<std::size_t>(n_);
   const float cell = 2 / static_cast<float>(n_);
-  return {(static_cast<float>(i % n) + 0.5f) * cell - 1, (static_cast<float>(i / n) + 0.5f) * cell - 1};
+  const std::size_t x = i % n, y = i / n;
+  return {(static_cast<float>(x) + 0.5f) * cell - 1, (static_cast<float>(y) + 0.5f) * cell - 1};
 }
 
 void fill_outside(const DiskGrid& grid, bool count_horizon, std::span<std::uint8_t> visible) {

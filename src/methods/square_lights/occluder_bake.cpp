@@ -26,6 +26,7 @@ void bake_occluder_tables(const Tracer& tracer, const Vec3& center, float radius
   const DiskGrid grid(options.resolution);
   const std::array<float, kShells> zoom = shell_zoom(options);
   std::vector<DiskRays> shells;
+  shells.reserve(kShells);
   for (int k = 0; k < kShells; ++k) shells.push_back(shell_rays(grid, k, zoom[k]));
 
   const std::size_t count = tables.size() / kTableCells;

@@ -16,7 +16,9 @@ constexpr float kStretched = 1.2f;
 /// A texel of the cube of directions.
 struct Texel {
   int face, x, y;
-  std::size_t index() const { return static_cast<std::size_t>((face * kShellSize + y) * kShellSize + x); }
+  std::size_t index() const {
+    return static_cast<std::size_t>(face) * kShellSize * kShellSize + static_cast<std::size_t>(y * kShellSize + x);
+  }
   Vec3 direction() const { return glm::normalize(cube_direction(face, cube_coordinate(x, kShellSize), cube_coordinate(y, kShellSize))); }
 };
 
@@ -103,7 +105,7 @@ void OccluderField::measure(const Context& context) {
   parallel_for(context, hidden->size(), 512, [&](std::size_t begin, std::size_t end) {
     // A cell through which the boundary runs is hidden in part: it reaches from half a cell this side of its centre to half a cell beyond.
     constexpr float codes_per_cell = 2.f / kTableSize / kDistanceStep;
-    constexpr auto most = static_cast<int>(codes_per_cell * 32 + 0.5f);
+    constexpr int most = static_cast<int>(codes_per_cell * 32);
     for (std::size_t i = begin; i < end; ++i) {
       int sum = 0;
       for (const std::int8_t code : table(i)) sum += std::clamp(most / 2 - 32 * code, 0, most);
