@@ -21,7 +21,7 @@ struct SquareBenchOptions {
   std::vector<std::string> views;        ///< instead of each part's own
   std::vector<std::string> parts;        ///< of square_bench_parts(); empty = all
   std::optional<IVec2> size_px;          ///< instead of the views' own 800x600
-  int truth_samples = 0;                 ///< light samples a pixel of the reference; 0 = 1024
+  int truth_samples = 0;                 ///< light samples a pixel of the reference; 0 = 4096
   bool strip = false;                    ///< the caller wants the strip of the results
   bool quick = false;                    ///< small pictures, coarse cube maps, tables and grounds: not to be quoted
 };

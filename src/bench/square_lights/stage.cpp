@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kMethod = "square-lights";
 constexpr const char* kForest = "environments/phalzer_forest_01_1k.hdr";
 constexpr const char* kGround = "ground";
-constexpr int kCube = 32, kQuickCube = 8, kTruthSamples = 1024, kQuickTruthSamples = 64;
+constexpr int kCube = 32, kQuickCube = 8, kTruthSamples = 4096, kQuickTruthSamples = 64;
 // Vertices along an edge of the ground where all is quick.
 constexpr std::uint32_t kQuickGround = 25;
 
