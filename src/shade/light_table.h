@@ -95,7 +95,9 @@ struct LightSubset {
 class LightTable {
  public:
   /// `bounds` are the scene's (for powers of directional lights and environments).
-  LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context);
+  /// `previous` (may be null) is the table of an earlier version of the scene: an environment that was merely turned keeps its samplers.
+  LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context,
+             const LightTable* previous = nullptr);
   ~LightTable();
 
   std::size_t size() const;  ///< entries, environment included

@@ -68,7 +68,8 @@ std::shared_ptr<const World> World::edit(const World& previous, Scene scene, con
   impl->tracer = make_tracer(impl->scene, *impl->textures, impl->options, context, before.tracer.get());
   const Bounds bounds = impl->tracer->bounds();
   const bool lights_kept = textures_kept && same_lights(before.scene, impl->scene, before.tracer->bounds(), bounds);
-  impl->lights = lights_kept ? before.lights : std::make_shared<const LightTable>(impl->scene, *impl->textures, bounds, context);
+  impl->lights =
+      lights_kept ? before.lights : std::make_shared<const LightTable>(impl->scene, *impl->textures, bounds, context, before.lights.get());
   impl->surfaces = make_surface_tables(impl->scene, impl->tracer->placement(), impl->options.shadow_terminator);
   return std::shared_ptr<const World>(new World(std::move(impl)));
 }

@@ -73,7 +73,7 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
   if (settings.paper_radius) plane_scale_ = 1;
 
   const LightChoice choice = parse_lights(settings.lights);
-  const bool traced = choice.kind == LightChoice::Kind::all || settings.basis == SquareLightsSettings::Basis::haar;
+  const bool traced = !bake.texel_masks().empty();
   if (traced) {
     directions_ = texel_directions(bake.cube().size, bake.world_from_environment());
     if (settings.basis == SquareLightsSettings::Basis::haar) {
@@ -241,7 +241,7 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
 }
 
 Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-                        const BrdfTable& brdf, Scratch& scratch) const {
+                        const Reflection& reflection, Scratch& scratch) const {
   const LightSet& lights = receiver.lights;
   const std::size_t n = lights.x.size();
   ++scratch.counts.receivers;
@@ -267,10 +267,17 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
       multiply_coverage(scratch.distance, gx, gy, lights, plane_scale_, coverage_, scratch.visible);
     hide(receiver, position, frame.normal, scratch);
   }
+  return reflect(frame, wo, reflection, lights, scratch);
+}
+
+Color FrameShading::reflect(const Frame3& frame, const Vec3& wo, const Reflection& reflection, const LightSet& lights,
+                            Scratch& scratch) const {
+  const Vec3 local = above_surface(frame.to_local(wo));
   std::size_t lit = 0;
-  const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), lights, scratch.visible, plane_scale_, lit);
+  const Color radiance = shade(frame, reflection.table.slices(local), lights, scratch.visible, plane_scale_, lit);
   scratch.counts.lights += lit;
-  return radiance;
+  if (reflection.lobe.empty()) return radiance;
+  return radiance + shade_lobe(reflection.lobe.view(local), frame, lights, scratch.visible);
 }
 
 void FrameShading::see_listed(std::uint32_t o, const ReceiverTables& tables, Scratch& scratch) const {
@@ -284,16 +291,14 @@ void FrameShading::see_listed(std::uint32_t o, const ReceiverTables& tables, Scr
   }
 }
 
-Color FrameShading::shade_listed(std::uint32_t o, const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const {
+Color FrameShading::shade_listed(std::uint32_t o, const Frame3& frame, const Vec3& wo, const Reflection& reflection,
+                                 Scratch& scratch) const {
   scratch.turned.turned_from(scratch.local, Mat3(receivers_[o].object_from_world));
-  std::size_t lit = 0;
-  const Color radiance = shade(frame, brdf.slices(above_surface(frame.to_local(wo))), scratch.turned, scratch.visible, plane_scale_, lit);
-  scratch.counts.lights += lit;
-  return radiance;
+  return reflect(frame, wo, reflection, scratch.turned, scratch);
 }
 
 Color FrameShading::lit_locally(std::uint32_t o, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position,
-                                const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const {
+                                const Frame3& frame, const Vec3& wo, const Reflection& reflection, Scratch& scratch) const {
   if (bake_.sources().empty()) return Color(0);
   const ShadingObject& object = bake_.scene().objects()[o];
   const Vec3 world = transform_point(receivers_[o].world_from_object, position);
@@ -319,14 +324,14 @@ Color FrameShading::lit_locally(std::uint32_t o, const VertexHit& hit, const Rec
     }
   }
   if (!object.deformable) hide_listed(o, world, scratch);
-  return shade_listed(o, frame, wo, brdf, scratch);
+  return shade_listed(o, frame, wo, reflection, scratch);
 }
 
 Color FrameShading::lit_split(std::uint32_t o, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-                              const BrdfTable& brdf, Scratch& scratch) const {
+                              const Reflection& reflection, Scratch& scratch) const {
   const Mat3 object_from_environment = Mat3(receivers_[o].object_from_world) * bake_.world_from_environment();
   const Vec3 world = transform_point(receivers_[o].world_from_object, position);
-  const BrdfTable::Slices slices = brdf.slices(above_surface(frame.to_local(wo)));
+  const BrdfTable::Slices slices = reflection.table.slices(above_surface(frame.to_local(wo)));
   const auto list = [&](std::span<const std::int32_t> nodes) {
     scratch.local.clear();
     scratch.patch_distance.assign(nodes.size(), std::numeric_limits<float>::infinity());
@@ -346,12 +351,12 @@ Color FrameShading::lit_split(std::uint32_t o, const ReceiverTables& tables, con
           const MergeNode& node = bake_.tree().nodes()[static_cast<std::size_t>(asked[k])];
           const Vec3 c = normalize_or(object_from_environment * node.light.center, Vec3(0, 0, 1));
           const Vec2 p = disk_from_direction(frame.to_local(c));
-          terms[k] = node_term(node, scratch.visible[k], brdf.moments(slices, p, node.light.radius * plane_scale_));
+          terms[k] = node_term(node, scratch.visible[k], reflection.table.moments(slices, p, node.light.radius * plane_scale_));
         }
       });
   list(nodes);
   ++scratch.counts.receivers;
-  return shade_listed(o, frame, wo, brdf, scratch);
+  return shade_listed(o, frame, wo, reflection, scratch);
 }
 
 void FrameShading::hide_listed(std::uint32_t o, const Vec3& world, Scratch& scratch) const {
@@ -387,9 +392,9 @@ void FrameShading::hide_listed(std::uint32_t o, const Vec3& world, Scratch& scra
 }
 
 Color FrameShading::lit_from_afar(std::uint32_t o, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-                                  const BrdfTable& brdf, Scratch& scratch) const {
-  return cut_.empty() ? lit(receivers_[o], tables, position, frame, wo, brdf, scratch)
-                      : lit_split(o, tables, position, frame, wo, brdf, scratch);
+                                  const Reflection& reflection, Scratch& scratch) const {
+  return cut_.empty() ? lit(receivers_[o], tables, position, frame, wo, reflection, scratch)
+                      : lit_split(o, tables, position, frame, wo, reflection, scratch);
 }
 
 Color FrameShading::by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const {
@@ -432,8 +437,8 @@ Color FrameShading::shade_vertex(std::uint32_t i, Scratch& scratch) const {
   tables_of(object, own, 1, tables, scratch);
   const Frame3 frame = tables.count > 0 ? tables.frame[0] : vertex_frame(vertices.normal[i], vertices.tangent[i]);
   const Vec3 wo = towards_eye(receiver, vertices.position[i]);
-  return lit_from_afar(object, tables, vertices.position[i], frame, wo, *brdf, scratch) +
-         lit_locally(object, own, tables, vertices.position[i], frame, wo, *brdf, scratch);
+  return lit_from_afar(object, tables, vertices.position[i], frame, wo, {*brdf, bake_.lobe(vertices.material[i])}, scratch) +
+         lit_locally(object, own, tables, vertices.position[i], frame, wo, {*brdf, bake_.lobe(vertices.material[i])}, scratch);
 }
 
 Color FrameShading::shade_point(const VertexHit& hit, std::uint32_t object, std::uint32_t material, const Vec3& position,
@@ -446,8 +451,8 @@ Color FrameShading::shade_point(const VertexHit& hit, std::uint32_t object, std:
   const auto turn = [&](const Vec3& v) { return normalize_or(transform_vector(receiver.object_from_world, v), v); };
   const Frame3 local = frame_from_normal_tangent(turn(frame.normal), turn(frame.tangent));
   const Vec3 here = transform_point(receiver.object_from_world, position);
-  return lit_from_afar(object, tables, here, local, turn(wo), *brdf, scratch) +
-         lit_locally(object, hit, tables, here, local, turn(wo), *brdf, scratch);
+  return lit_from_afar(object, tables, here, local, turn(wo), {*brdf, bake_.lobe(material)}, scratch) +
+         lit_locally(object, hit, tables, here, local, turn(wo), {*brdf, bake_.lobe(material)}, scratch);
 }
 
 }  // namespace sightline::square_lights

@@ -53,6 +53,11 @@ class FrameShading {
   std::size_t light_count() const { return world_lights_.count; }
 
  private:
+  /// How a receiver's material reflects: a table, and what is too sharp for one.
+  struct Reflection {
+    const BrdfTable& table;
+    const SharpLobe& lobe;
+  };
   /// An occluder as a receiver object meets it.
   struct Use {
     const Occluder* occluder = nullptr;
@@ -72,17 +77,18 @@ class FrameShading {
 
   void tables_of(std::uint32_t object, const VertexHit& hit, int count, ReceiverTables& tables, Scratch& scratch) const;
   Color lit(const Receiver& receiver, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-            const BrdfTable& brdf, Scratch& scratch) const;
+            const Reflection& reflection, Scratch& scratch) const;
   Color lit_locally(std::uint32_t object, const VertexHit& hit, const ReceiverTables& tables, const Vec3& position, const Frame3& frame,
-                    const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const;
+                    const Vec3& wo, const Reflection& reflection, Scratch& scratch) const;
   // For lights listed in scratch.local, with how far away they are in scratch.patch_distance.
   void see_listed(std::uint32_t object, const ReceiverTables& tables, Scratch& scratch) const;
   void hide_listed(std::uint32_t object, const Vec3& world, Scratch& scratch) const;
-  Color shade_listed(std::uint32_t object, const Frame3& frame, const Vec3& wo, const BrdfTable& brdf, Scratch& scratch) const;
+  Color shade_listed(std::uint32_t object, const Frame3& frame, const Vec3& wo, const Reflection& reflection, Scratch& scratch) const;
+  Color reflect(const Frame3& frame, const Vec3& wo, const Reflection& reflection, const LightSet& lights, Scratch& scratch) const;
   Color lit_from_afar(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-                      const BrdfTable& brdf, Scratch& scratch) const;
+                      const Reflection& reflection, Scratch& scratch) const;
   Color lit_split(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
-                  const BrdfTable& brdf, Scratch& scratch) const;
+                  const Reflection& reflection, Scratch& scratch) const;
   /// Lights that are above the horizon and not hidden already: scratch.active.
   void list_active(const Receiver& receiver, const Vec3& normal, Scratch& scratch) const;
   /// Those of them that come near an occluder's cone, turned into its space: scratch.near.

@@ -13,7 +13,7 @@ struct SquareLightsSettings {
   enum class Tables { distance, summed };
   enum class Combine { product, distance };
   enum class Coverage { parallel, average, gradient };
-  enum class Merge { paper, ward };
+  enum class Merge { paper, ward, moments };
   enum class Basis { squares, haar };
 
   std::string lights = "30";
@@ -21,7 +21,7 @@ struct SquareLightsSettings {
   bool area_weighted = true;
   Shading shading = Shading::vertex;
   int cube = 32;
-  Merge merge = Merge::paper;
+  Merge merge = Merge::moments;
   Storage storage = Storage::raw;
   int clusters = 256;
   int vectors = 8;
@@ -38,6 +38,7 @@ struct SquareLightsSettings {
   float split = 0;
   int patches = 16;
   bool source_fields = false;
+  bool sharp_lobes = true;
   int brdf_samples = 4;
 
   template <class Visitor>
@@ -56,7 +57,9 @@ struct SquareLightsSettings {
            .choices = {"vertex", "pixel"}});
     visit("cube", &S::cube, {.help = "texels along an edge of the cube map's faces", .minimum = 4, .maximum = 128, .unit = "texels"});
     visit("merge", &S::merge,
-          {.help = "next pair of regions: of least error once merged, or of least growth of the error", .choices = {"paper", "ward"}});
+          {.help = "next pair of regions: of least error once merged, of least growth of that, or of least growth of flux² times spread of "
+                   "direction, with squares that have their region's first two moments",
+           .choices = {"paper", "ward", "moments"}});
     visit("storage", &S::storage, {.help = "distance tables as bytes, or as clustered principal components", .choices = {"raw", "cpca"}});
     visit("clusters", &S::clusters, {.help = "cpca: clusters of a receiver's tables", .minimum = 1, .maximum = 65535, .symbol = "K"});
     visit("vectors", &S::vectors, {.help = "cpca: eigenvectors a cluster", .minimum = 0, .maximum = 64, .symbol = "n'"});
@@ -84,6 +87,7 @@ struct SquareLightsSettings {
     visit("patches", &S::patches, {.help = "squares that a local light is cut into", .minimum = 1, .maximum = 256, .symbol = "n_p"});
     visit("source_fields", &S::source_fields,
           {.help = "local lights from tables around them, as the paper has them, instead of from the receiver's own place"});
+    visit("sharp_lobes", &S::sharp_lobes, {.help = "lobes narrower than about 5 degrees as Gaussians, integrated over squares by formula"});
     visit("brdf_samples", &S::brdf_samples, {.help = "points along an edge of a cell of the BRDF's tables", .minimum = 1, .maximum = 16});
   }
 };

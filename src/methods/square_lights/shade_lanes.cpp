@@ -155,12 +155,14 @@ HWY_ATTR Color Shade(const Frame3& frame, const BrdfTable::Slices& slices, const
     if (hn::AllFalse(d, hn::Gt(v, zero))) continue;
     const V2 q = disk(d, to_local(d, frame, c));
     const V2 p{hn::MulSub(q.x, cosine, hn::Mul(q.y, sine)), hn::MulAdd(q.x, sine, hn::Mul(q.y, cosine))};
-    const V r = hn::Mul(hn::Load(d, lights.r.data() + i), scale), h = hn::Mul(r, half_edge);
+    const V r = hn::Mul(hn::Load(d, lights.r.data() + i), scale), own = hn::Mul(r, half_edge);
+    // Below half a cell the differences of sums are all rounding: a larger square's mean is taken (BrdfTable::kLeastHalf).
+    const V h = hn::Max(own, hn::Set(d, BrdfTable::kLeastHalf)), share = hn::Div(own, h);
     // Squares beyond the horizon.
     const V reach = hn::Add(one, r), distance2 = hn::MulAdd(p.x, p.x, hn::Mul(p.y, p.y));
     const M on = hn::And(hn::Gt(v, zero), hn::And(hn::Lt(distance2, hn::Mul(reach, reach)), hn::Gt(r, zero)));
     if (hn::AllFalse(d, on)) continue;
-    hn::Store(hn::IfThenElseZero(on, v), d, e.weight.data());
+    hn::Store(hn::IfThenElseZero(on, hn::Mul(v, hn::Mul(share, share))), d, e.weight.data());
     place_edge(d, hn::Sub(p.x, h), e.left.data(), e.fl.data()), place_edge(d, hn::Add(p.x, h), e.right.data(), e.fr.data());
     place_edge(d, hn::Sub(p.y, h), e.top.data(), e.ft.data()), place_edge(d, hn::Add(p.y, h), e.bottom.data(), e.fb.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {

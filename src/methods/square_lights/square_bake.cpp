@@ -15,7 +15,7 @@ namespace sightline::square_lights {
 namespace {
 
 // Versions of what is stored; to be raised whenever the same input would give other bytes.
-constexpr std::uint32_t kLightsVersion = 1, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
+constexpr std::uint32_t kLightsVersion = 2, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
 // Points along an edge of a texel when an environment becomes a cube map.
 constexpr int kCubePoints = 16;
 
@@ -134,7 +134,7 @@ SquareBake::SquareBake(const World& world, const SquareLightsSettings& settings,
         .remedy("raise --memory-limit, or use a coarser mesh");
   make_lights(world, settings, store, context);
   make_materials(world, settings, context);
-  if (needs_masks(settings)) {
+  if (needs_masks(settings) && !cube_.texels.empty()) {
     make_masks(world, settings, store, context);
   } else {
     make_tables(world, settings, store, context);
@@ -160,8 +160,8 @@ void SquareBake::make_lights(const World& world, const SquareLightsSettings& set
     const LightCube cube = make_light_cube([&](const Vec3& d) { return world.lights().environment(world_from_environment_ * d); },
                                            settings.cube, kCubePoints, context);
     MergeOptions options;
-    options.criterion =
-        settings.merge == SquareLightsSettings::Merge::ward ? MergeOptions::Criterion::ward : MergeOptions::Criterion::paper;
+    // The settings' names stand in the same order.
+    options.criterion = static_cast<MergeOptions::Criterion>(settings.merge);
     options.area_penalty = settings.area_penalty;
     const MergeTree tree = MergeTree::build(cube, options, context);
     const std::vector<BakeSection> sections{bake_section("texels", std::span<const Color>(cube.texels)),
@@ -360,7 +360,7 @@ void SquareBake::make_sources(const World& world, const SquareLightsSettings& se
 
 void SquareBake::make_materials(const World& world, const SquareLightsSettings& settings, const Context& context) {
   const std::size_t count = world.scene().materials.size() + 1;
-  brdfs_.resize(count), bsdfs_.resize(count);
+  brdfs_.resize(count), bsdfs_.resize(count), lobes_.resize(count);
   std::vector<bool> used(count, false);
   for (const std::uint32_t material : scene_.vertices().material) used[slot(material)] = true;
   // A footprint of the whole picture: textures give their mean.
@@ -370,7 +370,9 @@ void SquareBake::make_materials(const World& world, const SquareLightsSettings& 
     if (!used[m]) continue;
     const MaterialId id = m + 1 == count ? MaterialId() : MaterialId(m);
     bsdfs_[m] = make_bsdf(world.scene(), world.textures(), id, everywhere, 0.5f);
-    brdfs_[m] = std::make_unique<BrdfTable>(BrdfTable::build(bsdfs_[m], settings.brdf_samples, context));
+    if (settings.sharp_lobes) lobes_[m] = SharpLobe::fit(bsdfs_[m]);
+    brdfs_[m] =
+        std::make_unique<BrdfTable>(BrdfTable::build(bsdfs_[m], settings.brdf_samples, context, lobes_[m].empty() ? nullptr : &lobes_[m]));
     bytes_ += brdfs_[m]->bytes();
   }
 }

@@ -17,6 +17,7 @@
 #include "methods/square_lights/planar_occluder.h"
 #include "methods/square_lights/settings.h"
 #include "methods/square_lights/shading_scene.h"
+#include "methods/square_lights/sharp_lobe.h"
 #include "methods/square_lights/source_field.h"
 
 namespace sightline::square_lights {
@@ -69,6 +70,8 @@ class SquareBake final : public Bake {
   const std::vector<PlanarOccluder>& planes() const { return planes_; }
   /// Null for materials that no vertex has.
   const BrdfTable* brdf(std::uint32_t material) const;
+  /// Empty where a material has no lobe too sharp for its table.
+  const SharpLobe& lobe(std::uint32_t material) const { return lobes_[slot(material)]; }
   const Bsdf& bsdf(std::uint32_t material) const { return bsdfs_[slot(material)]; }
   /// What texture-dependent colours are divided by: the albedo of the BSDF that the table was made of.
   Color table_albedo(std::uint32_t material) const { return bsdfs_[slot(material)].albedo(); }
@@ -99,6 +102,7 @@ class SquareBake final : public Bake {
   std::vector<Occluder> occluders_;
   std::vector<PlanarOccluder> planes_;
   std::vector<std::unique_ptr<BrdfTable>> brdfs_;  ///< by material, the default one last
+  std::vector<SharpLobe> lobes_;
   std::vector<Bsdf> bsdfs_;
   std::shared_ptr<const BakeView> masks_held_;
   std::span<const std::uint16_t> masks_;

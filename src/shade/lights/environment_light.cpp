@@ -12,9 +12,27 @@
 
 namespace sightline {
 
-EnvironmentLight::EnvironmentLight(const Environment& environment, const Context& context)
-    : scale_(glm::max(environment.scale, Color(0))), world_from_local_(environment.world_from_environment) {
+EnvironmentLight::EnvironmentLight(const Environment& environment, const Context& context, const EnvironmentLight* previous) {
+  const Color scale = glm::max(environment.scale, Color(0));
+  if (previous && environment.image && previous->picture_ == environment.image && previous->mapping_ == environment.mapping &&
+      previous->scale_ == scale) {
+    *this = *previous;
+    turn(environment);
+    return;
+  }
+  picture_ = environment.image, mapping_ = environment.mapping, scale_ = scale;
   if (!is_finite(scale_)) throw input_error("the environment's scale is not finite").at(environment.name);
+  turn(environment);
+  if (!environment.image) {
+    total_luminance_ = 4 * std::numbers::pi * static_cast<double>(luminance(scale_));
+    return;
+  }
+  map_.emplace(environment.image, environment.mapping, context);
+  build(context);
+}
+
+void EnvironmentLight::turn(const Environment& environment) {
+  world_from_local_ = environment.world_from_environment;
   // Rotations and reflections only: a scale would change solid angles.
   for (int i = 0; i < 3; ++i) world_from_local_[i] = normalize_or(world_from_local_[i], Vec3(0));
   const float determinant = glm::determinant(world_from_local_);
@@ -22,12 +40,6 @@ EnvironmentLight::EnvironmentLight(const Environment& environment, const Context
     throw input_error("the environment's transform is neither a rotation nor a reflection").at(environment.name);
   }
   local_from_world_ = glm::transpose(world_from_local_);
-  if (!environment.image) {
-    total_luminance_ = 4 * std::numbers::pi * static_cast<double>(luminance(scale_));
-    return;
-  }
-  map_.emplace(environment.image, environment.mapping, context);
-  build(context);
 }
 
 void EnvironmentLight::build(const Context& context) {

@@ -19,7 +19,8 @@ namespace sightline {
 /// then a point within: two small tables keep enough bits of the random numbers for the point, which one table of all cells would not.
 class EnvironmentLight {
  public:
-  EnvironmentLight(const Environment& environment, const Context& context);
+  /// `previous` (may be null) lends its tables if the picture is the same and merely turned.
+  EnvironmentLight(const Environment& environment, const Context& context, const EnvironmentLight* previous = nullptr);
 
   /// From unit `direction` in world space.
   Color radiance(const Vec3& direction) const;
@@ -43,6 +44,7 @@ class EnvironmentLight {
   struct Cell {
     std::uint32_t x, y;
   };
+  void turn(const Environment& environment);
   void build(const Context& context);
   Cell cell_of(const Vec2& uv) const;
   float pdf_at(const Vec2& uv, const Vec3& local) const;
@@ -53,6 +55,8 @@ class EnvironmentLight {
   float column_border(std::uint32_t column) const;
   float row_border(std::uint32_t row) const;
 
+  std::shared_ptr<const Image> picture_;  ///< as it was given
+  EnvironmentMapping mapping_ = EnvironmentMapping::latlong;
   Color scale_;
   std::optional<EnvironmentMap> map_;
   Mat3 world_from_local_, local_from_world_;

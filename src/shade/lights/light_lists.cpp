@@ -101,7 +101,8 @@ std::vector<const Shape*> lights_of(const std::vector<Light>& lights) {
 
 }  // namespace
 
-LightLists::LightLists(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context) {
+LightLists::LightLists(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context,
+                       const EnvironmentLight* previous) {
   for (const Light& light : scene.lights) {
     if (std::visit([](const auto& shape) { return is_usable(shape); }, light.shape)) continue;
     context.warn(fmt::format("light '{}' is not finite or has no size; it is left out", light.name));
@@ -170,7 +171,7 @@ LightLists::LightLists(const Scene& scene, const TextureSet& textures, const Bou
   if (!spheres.empty()) scene_spheres = scene.spheres;
 
   if (scene.environment) {
-    environment.emplace(*scene.environment, context);
+    environment.emplace(*scene.environment, context, previous);
     environment_index = next_index();
     powers.push_back(static_cast<float>(environment->total_luminance() * scene_disk_area));
   }

@@ -21,7 +21,9 @@ namespace sightline {
 /// Entries are numbered through: rectangles, triangles, disks (all flat); points, directional lights, spots (all punctual); spheres; the
 /// environment. Vector code relies on the order: it handles what comes before the disks, and what comes before the spots.
 struct LightLists {
-  LightLists(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context);
+  /// `previous` (may be null): the environment of an earlier version of the scene, whose tables are taken over if it was merely turned.
+  LightLists(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context,
+             const EnvironmentLight* previous = nullptr);
 
   AlignedVector<FlatLight> flats;
   std::vector<FlatEmitter> emitters;

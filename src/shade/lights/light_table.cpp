@@ -63,8 +63,9 @@ std::size_t LightTable::Impl::sample_lanes(const LightLanes& lanes, std::uint32_
   return 0;
 }
 
-LightTable::LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context)
-    : impl_(std::make_unique<const Impl>(scene, textures, bounds, context)) {}
+LightTable::LightTable(const Scene& scene, const TextureSet& textures, const Bounds& bounds, const Context& context,
+                       const LightTable* previous)
+    : impl_(std::make_unique<const Impl>(scene, textures, bounds, context, previous ? previous->impl_.get() : nullptr)) {}
 LightTable::~LightTable() = default;
 
 std::size_t LightTable::size() const { return impl_->lists.size(); }

@@ -10,8 +10,11 @@
 namespace sightline {
 
 struct LightTable::Impl {
-  Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context)
-      : lists(scene, texture_set, bounds, context), picker(lists.powers), textures(texture_set), beam(bounds) {
+  Impl(const Scene& scene, const TextureSet& texture_set, const Bounds& bounds, const Context& context, const Impl* previous)
+      : lists(scene, texture_set, bounds, context, previous && previous->lists.environment ? &*previous->lists.environment : nullptr),
+        picker(lists.powers),
+        textures(texture_set),
+        beam(bounds) {
     for (const FlatEmitter& emitter : lists.emitters) has_textures = has_textures || emitter.is(FlatEmitter::kTextured);
   }
 

@@ -353,7 +353,8 @@ TEST(WorldEdit, BentMeshesRebuildThemselvesAlone) {
 TEST(WorldEdit, TurnedEnvironmentsLeaveGeometryAndTexturesAlone) {
   Scene scene = mixed_scene();
   scene.environment = Environment{};
-  scene.environment->image = std::make_shared<const Image>(Image{8, 4, 1, Image::Floats(32, 1.f)});
+  scene.environment->image = std::make_shared<const Image>(
+      Image{8, 4, 1, Image::Floats{1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 2, 3, 4, 5}});
   const auto first = build(scene);
   const Context context;
   scene.environment->world_from_environment = Mat3(glm::rotate(Mat4(1), 0.5f, Vec3{0, 1, 0}));
@@ -362,6 +363,13 @@ TEST(WorldEdit, TurnedEnvironmentsLeaveGeometryAndTexturesAlone) {
   EXPECT_EQ(second->tracer().statistics().mesh_scenes_built, 0u);
   EXPECT_EQ(&second->textures(), &first->textures());
   EXPECT_NE(&second->lights(), &first->lights());
+  // Samplers that were taken over are those of a World built anew.
+  const auto anew = build(scene);
+  for (int i = 0; i < 32; ++i) {
+    const Vec3 d = glm::normalize(Vec3(std::sin(static_cast<float>(i)), std::cos(2.f * static_cast<float>(i)), 0.3f));
+    EXPECT_EQ(second->lights().environment(d), anew->lights().environment(d));
+    EXPECT_EQ(second->lights().environment_density(d), anew->lights().environment_density(d));
+  }
 }
 
 TEST(WorldEdit, MeshesAndSpheresComeAndGo) {
