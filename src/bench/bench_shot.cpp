@@ -32,7 +32,9 @@ std::optional<BuiltView> load_built_view(const std::string& name, const std::fil
 }
 
 Shot shoot(const BuiltView& view, const RenderRequest& request, const Context& context) {
-  const RenderResult result = render_view(view, request, context);
+  RenderRequest wanted = request;
+  wanted.wants_identity = false;
+  const RenderResult result = render_view(view, wanted, context);
   return {result.frame.color_image(), result.seconds.render, result.statistics, result.seconds.prepare};
 }
 

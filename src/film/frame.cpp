@@ -1,6 +1,7 @@
 #include "film/frame.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -146,6 +147,28 @@ double Frame::mean_samples_done() const {
   return sum / (static_cast<double>(width_) * height_);
 }
 
+namespace {
+
+/// ExactSum::to_double(), bit for bit, without the library's conversion of 128 bits.
+double to_double(const ExactSum& sum) {
+  const bool negative = sum.value < 0;
+  __extension__ typedef unsigned __int128 UInt128;
+  const UInt128 magnitude = negative ? -static_cast<UInt128>(sum.value) : static_cast<UInt128>(sum.value);
+  const auto high = static_cast<std::uint64_t>(magnitude >> 64), low = static_cast<std::uint64_t>(magnitude);
+  double result = 0;
+  if (high == 0) {
+    result = static_cast<double>(low) * 0x1p-64;
+  } else {
+    // The leading 64 bits; the last of them remembers whether any follow, so that rounding sees the whole number.
+    const int rest = 64 - std::countl_zero(high);
+    const std::uint64_t top = static_cast<std::uint64_t>(magnitude >> rest) | ((low << (64 - rest)) != 0 ? 1u : 0u);
+    result = std::ldexp(static_cast<double>(top), rest - 64);
+  }
+  return negative ? -result : result;
+}
+
+}  // namespace
+
 Vec3 Frame::value(Aov aov, std::uint32_t pixel) const { return value(aov, pixel, has_light_image() ? mean_samples_done() : 0); }
 
 Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) const {
@@ -156,7 +179,7 @@ Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) cons
   if (sums.empty() || samples == 0) return result;
   const std::size_t channels = aov_info(aov).channels.size();
   for (std::size_t c = 0; c < channels; ++c) {
-    double mean = sums[pixel * channels + c].to_double() / samples;
+    double mean = to_double(sums[pixel * channels + c]) / samples;
     if (!arrived.empty()) mean += arrived[pixel * channels + c].to_double() / light_image_samples;
     result[static_cast<int>(c)] = static_cast<float>(mean);
   }
@@ -167,8 +190,24 @@ Color Frame::color(std::uint32_t pixel) const { return value(Aov::color, pixel);
 
 ColorImage Frame::color_image() const {
   ColorImage image(width_, height_);
-  const double mean = mean_samples_done();
-  for (std::uint32_t pixel = 0; pixel < image.pixels.size(); ++pixel) image.pixels[pixel] = value(Aov::color, pixel, mean);
+  if (has_light_image()) {
+    const double mean = mean_samples_done();
+    for (std::uint32_t pixel = 0; pixel < image.pixels.size(); ++pixel) image.pixels[pixel] = value(Aov::color, pixel, mean);
+    return image;
+  }
+  // value() for tile after tile.
+  const ExactSum* const sums = sums_[static_cast<std::size_t>(Aov::color)].data();
+  for (std::size_t index = 0; index < tile_count(); ++index) {
+    const Tile t = tile(index);
+    const std::uint32_t samples = samples_done_[index];
+    for (int y = t.y0; samples > 0 && y < t.y1; ++y) {
+      for (int x = t.x0; x < t.x1; ++x) {
+        const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        for (int c = 0; c < 3; ++c)
+          image.pixels[pixel][c] = static_cast<float>(to_double(sums[3 * pixel + static_cast<std::size_t>(c)]) / samples);
+      }
+    }
+  }
   return image;
 }
 

@@ -191,7 +191,8 @@ RenderResult render(const std::shared_ptr<const World>& world, const Camera& cam
                       {}};
   result.settings = settings.method.to_text();
   for (auto& setting : settings.visibility.to_text()) result.settings.push_back(std::move(setting));
-  result.identity = frame_identity(*world, view, result, context.seed, multiple);
+  if (request.wants_identity || request.checkpoint || request.resume)
+    result.identity = frame_identity(*world, view, result, context.seed, multiple);
   if (request.resume) result.frame = resume_frame(*request.resume, result.identity, samples, aovs);
 
   const Stopwatch prepare_watch;

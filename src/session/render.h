@@ -27,6 +27,8 @@ struct RenderRequest {
   std::optional<SampleRange> sample_range;  ///< part of the total spp
   AovSet aovs;
   std::optional<std::filesystem::path> checkpoint, resume;
+  /// Whether the result says what slices and checkpoints of it must share: a hash of the whole scene, which a viewer need not pay for.
+  bool wants_identity = true;
   /// Where methods keep what they precompute, over frames and runs; null: nowhere.
   std::shared_ptr<BakeStore> bakes;
 };

@@ -187,5 +187,27 @@ TEST(Aov, ColourAndAlphaAreTheChannelsThatReadersLookFor) {
   EXPECT_EQ(plain.find("A"), nullptr);
 }
 
+TEST(Frame, ColoursAreTheSumsRoundedOnceHoweverLarge) {
+  Frame frame(40, 33, {});
+  std::uint32_t random = 1;
+  std::span<ExactSum> sums = frame.sums(Aov::color);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    // Any number of leading bits, of either sign, with all the bits that follow.
+    Int128 value = 0;
+    for (int k = 0; k < 4; ++k) random = random * 1664525u + 1013904223u, value = (value << 32) | random;
+    value >>= i % 127;
+    sums[i].value = i % 2 ? -value : value;
+  }
+  for (std::size_t tile = 0; tile < frame.tile_count(); ++tile) frame.set_samples_done(tile, 3);
+  const ColorImage image = frame.color_image();
+  for (std::uint32_t pixel = 0; pixel < 40 * 33; ++pixel) {
+    for (int c = 0; c < 3; ++c) {
+      const float expected = static_cast<float>(sums[3 * pixel + static_cast<std::size_t>(c)].to_double() / 3);
+      ASSERT_EQ(frame.color(pixel)[c], expected) << pixel;
+      ASSERT_EQ(image.pixels[pixel][c], expected) << pixel;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline
