@@ -29,7 +29,7 @@ std::vector<SquareLight> texel_lights(const LightCube& cube) {
   return lights;
 }
 
-/// Whether an occluder's sphere may come between a receiver's sphere and a light (digest 3.7): the light's directions make a cone of half
+/// Whether an occluder's sphere may come between a receiver's sphere and a light: the light's directions make a cone of half
 /// angle `a` about c, and the occluder has to reach into the volume that it sweeps from the receiver.
 bool may_hide(const Vec3& receiver_center, float receiver_radius, const Vec3& occluder_center, float occluder_radius,
               const SquareLight& light) {
@@ -50,6 +50,13 @@ void make_room(std::size_t lights, FrameShading::Scratch& scratch) {
        {&scratch.visible, &scratch.distance, &scratch.other, &scratch.near_x, &scratch.near_y, &scratch.near_z, &scratch.near_r})
     values->resize(padded(lights));
   scratch.near.resize(padded(lights));
+}
+
+/// The least distance of all; with that of another occluder goes the gradient of the receiver's own, whose boundary it is no longer.
+void take_nearer(FrameShading::Scratch& scratch, std::uint32_t i, float distance) {
+  if (distance >= scratch.distance[i]) return;
+  scratch.distance[i] = distance;
+  if (i < scratch.gradient_x.size()) scratch.gradient_x[i] = scratch.gradient_y[i] = 0;
 }
 
 // Lights that splitting may make of one.
@@ -219,7 +226,7 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t i = scratch.near[k];
       if (combine)
-        scratch.distance[i] = std::min(scratch.distance[i], scratch.other[k]);
+        take_nearer(scratch, i, scratch.other[k]);
       else if (const float d = scratch.other[k], r_p = scratch.near_r[k] * plane_scale_; d < r_p)
         scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
     }
@@ -233,7 +240,7 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
       const float d = scratch.plane.distance({world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]}, r_p);
       if (d >= r_p) continue;
       if (combine)
-        scratch.distance[i] = std::min(scratch.distance[i], d);
+        take_nearer(scratch, i, d);
       else
         scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
     }
@@ -248,7 +255,7 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
   if (n == 0) return Color(0);
   make_room(n, scratch);
   const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
-  const bool gradients = coverage_ == Coverage::gradient && !combine;
+  const bool gradients = coverage_ == Coverage::gradient;
   if (gradients && scratch.gradient_x.size() < n) scratch.gradient_x.resize(n), scratch.gradient_y.resize(n);
   const std::span<float> gx = gradients ? std::span<float>(scratch.gradient_x) : std::span<float>(),
                          gy = gradients ? std::span<float>(scratch.gradient_y) : std::span<float>();
@@ -256,12 +263,13 @@ Color FrameShading::lit(const Receiver& receiver, const ReceiverTables& tables, 
   if (settings_.tables == SquareLightsSettings::Tables::summed && tables.count > 0) {
     summed_visibility(tables, lights, plane_scale_, scratch.visible);
     std::fill_n(scratch.distance.begin(), n, kNoOccluder);
+    std::fill(gx.begin(), gx.end(), 0.f), std::fill(gy.begin(), gy.end(), 0.f);
   } else {
     self_distances(tables, lights, std::span(scratch.distance).first(n), gx, gy);
   }
   if (combine) {
     hide(receiver, position, frame.normal, scratch);
-    multiply_coverage(scratch.distance, {}, {}, lights, plane_scale_, coverage_, scratch.visible);
+    multiply_coverage(scratch.distance, gx, gy, lights, plane_scale_, coverage_, scratch.visible);
   } else {
     if (tables.count > 0 && settings_.tables == SquareLightsSettings::Tables::distance)
       multiply_coverage(scratch.distance, gx, gy, lights, plane_scale_, coverage_, scratch.visible);

@@ -44,8 +44,10 @@ void add_geometry(BakeHash& hash, const Scene& scene, const ShadingObject& objec
       hash.add(interface_only).add(material.alpha_mode);
       if (material.alpha_mode == AlphaMode::opaque) return;
       hash.add(material.alpha_cutoff).add(material.alpha.value).add(material.alpha.channel).add(mesh.uvs.span());
-      // Whatever any picture holds: masks are rare, and a bake too many costs less than a wrong one.
-      for (const ImageAsset& asset : scene.images) hash.add(std::string_view(asset.name));
+      // All pictures, whichever the mask is: masks are rare, and a bake too many costs less than a wrong one.
+      for (const ImageAsset& asset : scene.images) {
+        if (asset.image) std::visit([&](const auto& values) { add_vector(hash, values); }, asset.image->data);
+      }
     };
     if (instance.material_override.valid()) {
       add_alpha(instance.material_override);

@@ -172,6 +172,17 @@ TEST(SquareLights, MoreLightsComeCloserToTheTruthWhichIsTheReference) {
   EXPECT_LT(l2(take(shot, quick({"basis=haar", "lights=384"}), store), truth), 1e-8) << "all terms are the truth";
 }
 
+TEST(SquareLights, CoverageByGradientIsNotItsMean) {
+  const Shot shot = shot_with_camera(small_scene(), {48, 36});
+  BakeStore store;
+  for (const char* combine : {"combine=distance", "combine=product"}) {
+    const Taken mean = take(shot, quick({"coverage=average", combine}), store),
+                exact = take(shot, quick({"coverage=gradient", combine}), store);
+    EXPECT_GT(l2(exact, mean), 1e-9) << combine;
+    EXPECT_LT(l2(exact, mean), 1e-2) << combine;
+  }
+}
+
 TEST(SquareLights, TurningTheEnvironmentIsTurningTheSceneBack) {
   const Scene scene = small_scene();
   const glm::mat4 turn = glm::rotate(glm::mat4(1), 0.7f, glm::normalize(Vec3(0.3f, 1, 0.2f)));
