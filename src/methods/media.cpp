@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/math/vec3_batch.h"
@@ -10,7 +9,6 @@
 namespace sightline {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kMaxCrossings = 1024;  // interfaces on one ray: a bound against files made to hang
 
 // Behind a surface, in the ray's direction and off it by the error bound.

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 
 namespace sightline {
 namespace {
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 QuerySemantic semantic_of(const LightSampleBatch& light, std::size_t lane) {
   const bool infinite = std::isinf(light.distance[lane]);

@@ -13,24 +13,25 @@
 namespace sightline {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // JSON has no infinity (the PSNR of equal pictures is one), so such values travel as text.
-Json number(double value) {
+OrderedJson number(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
 
-Json describe(const ReportImage& entry) {
+OrderedJson describe(const ReportImage& entry) {
   const PackedImage packed = pack_image(entry.image);
-  Json metrics = Json::array();
+  OrderedJson metrics = OrderedJson::array();
   for (const ReportMetric& metric : entry.metrics)
     metrics.push_back({{"name", metric.name},
                        {"value", number(metric.value)},
                        {"larger_is_better", metric.larger_is_better},
                        {"formula", metric.formula}});
-  Json statistics = Json::parse(entry.statistics_json, nullptr, false);
-  if (statistics.is_discarded()) statistics = entry.statistics_json.empty() ? Json(nullptr) : Json{{"text", entry.statistics_json}};
+  OrderedJson statistics = OrderedJson::parse(entry.statistics_json, nullptr, false);
+  if (statistics.is_discarded())
+    statistics = entry.statistics_json.empty() ? OrderedJson(nullptr) : OrderedJson{{"text", entry.statistics_json}};
   return {{"name", entry.name},
           {"pixels", packed.base64},
           {"mean_luminance", packed.mean_luminance},
@@ -76,12 +77,9 @@ constexpr std::string_view kBody = R"~html~(<body class="compare">
 }  // namespace
 
 std::string compare_report(const ReportInput& input) {
-  Json data{{"title", input.title},
-            {"width", input.reference.image.width},
-            {"height", input.reference.image.height},
-            {"command", input.command},
-            {"notes", input.notes},
-            {"images", Json::array()}};
+  OrderedJson data{
+      {"title", input.title}, {"width", input.reference.image.width}, {"height", input.reference.image.height}, {"command", input.command},
+      {"notes", input.notes}, {"images", OrderedJson::array()}};
   check_size(input.reference, input.reference);
   data["images"].push_back(describe(input.reference));
   for (const ReportImage& entry : input.images) {
@@ -93,7 +91,7 @@ std::string compare_report(const ReportInput& input) {
   page += kBody;
   page += "<script type=\"application/json\" id=\"data\">";
   // Names of files may hold any bytes; what is no UTF-8 is replaced instead of refused.
-  page += escape_script(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  page += escape_script(data.dump(-1, ' ', false, OrderedJson::error_handler_t::replace));
   page += "</script>\n<script>\n(() => {\n'use strict';\n";
   for (const std::string_view script :
        {assets::decode_js, assets::tone_js, assets::colormap_js, assets::viewport_js, assets::tables_js, assets::compare_js})

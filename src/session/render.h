@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "bake/bake_store.h"
+#include "base/core/stopwatch.h"
 #include "film/frame.h"
 #include "film/frame_file.h"
 #include "methods/method.h"
 #include "session/scheduler.h"
-#include "session/stopwatch.h"
 
 namespace sightline {
 

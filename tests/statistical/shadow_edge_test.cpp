@@ -11,7 +11,7 @@
 namespace sightline::test {
 namespace {
 
-constexpr double kReflectance = 0.7;
+constexpr double kFloorReflectance = 0.7;
 
 /// A strip of the floor from x = -range to range at z = 0, seen from between floor and plate: one pixel row.
 Shot strip(const std::string& spec, float range, int pixels) {
@@ -42,7 +42,7 @@ TEST(ShadowEdge, PenumbraOfASquareIsTheVisiblePartOfIt) {
       const double from = std::clamp(-x, -h, h);  // the plate's edge hides what lies left of -x
       const Vec3d visible[] = {{from, 2, -h}, {h, 2, -h}, {h, 2, h}, {from, 2, h}};
       const Vec3d point(x, 0, 0), normal(0, 1, 0);
-      const double scale = kReflectance / std::numbers::pi * radiance;
+      const double scale = kFloorReflectance / std::numbers::pi * radiance;
       const double truth = scale * polygon_irradiance(point, normal, visible);
       const double whole = scale * polygon_irradiance(point, normal, whole_light);
       const double seen = picture.frame.color(pixel).y;
@@ -71,7 +71,7 @@ TEST(ShadowEdge, PointAndDirectionalLightsHaveHardEdges) {
     for (std::uint32_t pixel = 0; pixel < 256; ++pixel) {
       const double x = floor_x(shot, pixel), square = 4 + x * x;
       const double irradiance = point ? 10 * (2 / std::sqrt(square)) / square : 3;
-      const double truth = x > 0 ? kReflectance / std::numbers::pi * irradiance : 0;
+      const double truth = x > 0 ? kFloorReflectance / std::numbers::pi * irradiance : 0;
       EXPECT_NEAR(picture.frame.color(pixel).y, truth, 1e-5 * truth) << light << " x " << x;
     }
   }

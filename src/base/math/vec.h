@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <numbers>
 
 namespace sightline {
@@ -21,6 +22,7 @@ using Mat4 = glm::mat4;
 using Color = glm::vec3;
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
 /// Relative luminance of linear Rec.709.

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr int kFrames = 120, kQuickFrames = 12, kEvery = 10, kQuickEvery = 4, kStripFrames = 6;
+constexpr int kMovingFrames = 120, kQuickMovingFrames = 12, kEvery = 10, kQuickEvery = 4, kStripFrames = 6;
 
 /// Frames side by side over those of the reference.
 class Strip {
@@ -51,7 +51,7 @@ class Strip {
 
 Json square_moving(SquareStage stage, const SquareBenchShared& shared, std::optional<ColorImage>& strip, const Context& context) {
   const bool quick = shared.options.quick;
-  const int frames = quick ? kQuickFrames : kFrames, every = quick ? kQuickEvery : kEvery;
+  const int frames = quick ? kQuickMovingFrames : kMovingFrames, every = quick ? kQuickEvery : kEvery;
   const float duration = stage.scene.animation_duration_s;
   if (!(duration > 0)) {
     context.warn(fmt::format("{}: nothing moves; not measured", stage.name));

@@ -13,7 +13,7 @@
 namespace sightline {
 namespace {
 
-constexpr int kWidth = 400;
+constexpr int kPictureWidth = 400;
 
 /// Makes pictures of one stage and adds them, the reference first.
 class Figure {
@@ -41,7 +41,7 @@ class Figure {
         shot.image);
   }
   void add(const std::string& name, const std::string& caption, const ColorImage& image) {
-    pictures_.push_back({fmt::format("{}: {}", title_, name), caption, thumbnail(image, kWidth), exposure_});
+    pictures_.push_back({fmt::format("{}: {}", title_, name), caption, thumbnail(image, kPictureWidth), exposure_});
   }
 
  private:

@@ -11,13 +11,13 @@
 namespace sightline {
 namespace {
 
-constexpr int kWidth = 400, kHeight = 200, kCubePoints = 16;
+constexpr int kMapWidth = 400, kMapHeight = 200, kCubePoints = 16;
 
 ColorImage picture_of(const std::function<Color(const Vec3&)>& color) {
-  ColorImage image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const Vec2 uv((static_cast<float>(x) + 0.5f) / kWidth, (static_cast<float>(y) + 0.5f) / kHeight);
+  ColorImage image(kMapWidth, kMapHeight);
+  for (int y = 0; y < kMapHeight; ++y) {
+    for (int x = 0; x < kMapWidth; ++x) {
+      const Vec2 uv((static_cast<float>(x) + 0.5f) / kMapWidth, (static_cast<float>(y) + 0.5f) / kMapHeight);
       image.at(x, y) = color(environment_direction(EnvironmentMapping::latlong, uv));
     }
   }

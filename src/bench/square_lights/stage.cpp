@@ -27,13 +27,13 @@ constexpr std::uint32_t kQuickGround = 25;
 
 /// A blue sky over green land with a sun a few degrees wide, for runs without data.
 Environment plain_sky() {
-  constexpr int kWidth = 128, kHeight = 64;
+  constexpr int kSkyWidth = 128, kSkyHeight = 64;
   const Vec3 sun = glm::normalize(Vec3(0.5f, 0.7f, 0.5f));
-  Image image{kWidth, kHeight, 3, Image::Floats()};
+  Image image{kSkyWidth, kSkyHeight, 3, Image::Floats()};
   auto& values = std::get<Image::Floats>(image.data);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const float theta = kPi * (static_cast<float>(y) + 0.5f) / kHeight, phi = 2 * kPi * (static_cast<float>(x) + 0.5f) / kWidth;
+  for (int y = 0; y < kSkyHeight; ++y) {
+    for (int x = 0; x < kSkyWidth; ++x) {
+      const float theta = kPi * (static_cast<float>(y) + 0.5f) / kSkyHeight, phi = 2 * kPi * (static_cast<float>(x) + 0.5f) / kSkyWidth;
       const Vec3 d(-std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
       Color color = d.y > 0 ? glm::mix(Color(0.9f, 0.95f, 1.f), Color(0.25f, 0.5f, 1.f), d.y) : Color(0.15f, 0.2f, 0.1f);
       if (glm::dot(d, sun) > std::cos(0.1f)) color = Color(60, 55, 45);

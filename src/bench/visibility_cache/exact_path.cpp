@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/core/stopwatch.h"
 #include "bench/bare_loop.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/query_recorder.h"
-#include "session/stopwatch.h"
 #include "trace/embree/embree_tracer.h"
 #include "visibility/query_rays.h"
 

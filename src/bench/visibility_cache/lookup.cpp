@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/core/stopwatch.h"
 #include "bench/median.h"
 #include "bench/visibility_cache/exact_path.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/frame_share.h"
 #include "bench/visibility_cache/parts.h"
 #include "bench/visibility_cache/query_recorder.h"
-#include "session/stopwatch.h"
 #include "visibility/query_rays.h"
 
 namespace sightline {
@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kRounds = 5;
+constexpr int kLookUpRounds = 5;
 
 /// Sums over batches of the medians of some rounds.
 struct Replay {
@@ -79,7 +79,7 @@ Replay replay(const std::vector<RecordedScope>& scopes, const CacheView& view, c
   for (const RecordedScope& scope : scopes) {
     context.check_cancelled();
     std::vector<BatchTimes> times(scope.batches.size());
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kLookUpRounds; ++round) {
       worker->begin(scope.scope);
       for (std::size_t b = 0; b < scope.batches.size(); ++b) {
         const QueryBatch& batch = scope.batches[b];

@@ -21,9 +21,9 @@ namespace sightline {
 namespace {
 
 /// What OpenEXR reads from. It wants exceptions at the end of the data; they do not leave parse_exr_layers().
-class MemoryStream : public Imf::IStream {
+class MemoryInput : public Imf::IStream {
  public:
-  explicit MemoryStream(std::span<const std::byte> bytes) : IStream("memory"), bytes_(bytes) {}
+  explicit MemoryInput(std::span<const std::byte> bytes) : IStream("memory"), bytes_(bytes) {}
 
   bool isMemoryMapped() const override { return true; }
   bool read(char target[], int count) override {
@@ -84,7 +84,7 @@ void read_pixels(Imf::InputPart& input, const ExrPartHeader& part, LayeredImage&
 }
 
 LayeredImage read_first_part(std::span<const std::byte> bytes, const ExrPartHeader& part) {
-  MemoryStream stream(bytes);
+  MemoryInput stream(bytes);
   // No threads of OpenEXR's own, and no search through a file whose table of chunks was never written.
   Imf::MultiPartInputFile file(stream, 0, false);
   Imf::InputPart input(file, 0);

@@ -21,9 +21,9 @@
 namespace sightline {
 namespace {
 
-class MemoryStream : public Imf::OStream {
+class MemoryOutput : public Imf::OStream {
  public:
-  MemoryStream() : OStream("memory") {}
+  MemoryOutput() : OStream("memory") {}
 
   void write(const char source[], int count) override {
     const std::size_t end = position_ + static_cast<std::size_t>(count);
@@ -103,7 +103,7 @@ std::vector<std::byte> encode_exr(const LayeredImage& image, const ExrOptions& o
       const std::size_t value_bytes = channel.half ? sizeof(half) : sizeof(float);
       source.insert(channel.name, Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, base, value_bytes, value_bytes * width));
     }
-    MemoryStream stream;
+    MemoryOutput stream;
     {
       Imf::OutputFile file(stream, header, 0);
       file.setFrameBuffer(source);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/vec3_batch.h"
 #include "methods/bidirectional/dimensions.h"
 #include "methods/bidirectional/vertex_density.h"
 #include "visibility/query_rays.h"
@@ -11,8 +12,6 @@ namespace sightline::bidirectional {
 namespace {
 
 using dimension::pair_of;
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 double abs_cosine(const Vec3& normal, const Vec3& direction) { return std::fabs(static_cast<double>(glm::dot(normal, direction))); }
 

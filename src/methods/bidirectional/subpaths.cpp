@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "methods/bidirectional/dimensions.h"
 #include "shade/material_eval.h"
 
@@ -11,10 +11,6 @@ namespace sightline::bidirectional {
 namespace {
 
 using dimension::pair_of;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
@@ -12,11 +11,7 @@
 #include "shade/material_eval.h"
 
 namespace sightline {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 CameraPass::CameraPass(const World& world, const View& view, std::uint64_t seed, int light_samples, Sampling sampling,
                        Visibility* visibility)

@@ -8,8 +8,8 @@
 namespace sightline {
 namespace {
 
-constexpr float kMinCosine = 0.9f;
-constexpr float kMaxPlaneDistance = 0.005f;  // relative to depth
+constexpr float kEdgeCosine = 0.9f;
+constexpr float kEdgeDistance = 0.005f;  // relative to depth
 
 bool differ(const GBuffer& g, std::size_t a, std::size_t b, const GeometryOptions& options) {
   if (g.kind[a] != g.kind[b]) return true;
@@ -54,9 +54,9 @@ std::uint32_t same_surface_near(const GBuffer& g, std::uint32_t pixel, const GBu
     for (int nx = x - 1; nx <= x + 1; ++nx) {
       if (!g.inside(nx, ny)) continue;
       const std::size_t at = g.at(nx, ny);
-      if (g.kind[at] != points.kind[point] || glm::dot(load(g.shading_normal, at), normal) < kMinCosine) continue;
+      if (g.kind[at] != points.kind[point] || glm::dot(load(g.shading_normal, at), normal) < kEdgeCosine) continue;
       const Vec3 d = load(g.position, at) - position;
-      if (std::fabs(glm::dot(d, facet)) > kMaxPlaneDistance * points.depth[point]) continue;
+      if (std::fabs(glm::dot(d, facet)) > kEdgeDistance * points.depth[point]) continue;
       const float squared = glm::dot(d, d);
       if (nearest == kNoPixel || squared < least) nearest = static_cast<std::uint32_t>(at), least = squared;
     }

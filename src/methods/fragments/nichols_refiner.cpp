@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 
+#include "base/core/stopwatch.h"
 #include "base/parallel/parallel.h"
 
 namespace sightline {
@@ -11,10 +11,6 @@ namespace {
 
 bool differ(const NicholsCell& a, const NicholsCell& b, int threshold) {
   return a.known && b.known && std::popcount(a.mask ^ b.mask) > threshold;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -48,10 +44,10 @@ void NicholsRefiner::map_questions(const GBuffer& g, const Worker& worker, std::
 template <class Body>
 void NicholsRefiner::for_roots(const GBuffer& g, Body body) {
   parallel_for(context_, g.root_count(), 1, [&](std::size_t begin, std::size_t end) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     const std::size_t thread = static_cast<std::size_t>(worker_index()) % workers_.size();
     for (std::size_t root = begin; root < end; ++root) body(root, thread);
-    workers_[thread].statistics.stage_seconds["visibility"] += seconds_since(start);
+    workers_[thread].statistics.stage_seconds["visibility"] += stopwatch.seconds();
   });
 }
 

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "methods/fragments/pyramid_lanes.h"
 
 namespace sightline {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 DiscontinuityPyramid::DiscontinuityPyramid() {
   for (int m = 0; m <= kRootLevel; ++m) {

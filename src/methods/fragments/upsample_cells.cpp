@@ -11,9 +11,9 @@ namespace {
 // Two points of one surface: normals within 26 degrees, and neither further from the other's tangent plane than a fiftieth of their
 // depth. A cylinder whose normals turn by 26 degrees leaves its chord by 13: the slope of the chord tells a step of a stair, however low,
 // from a curve.
-constexpr float kMinCosine = 0.9f;
-constexpr float kMaxPlaneDistance = 0.02f;
-constexpr float kMaxSlope = 0.35f;
+constexpr float kSurfaceCosine = 0.9f;
+constexpr float kSurfaceDistance = 0.02f;
+constexpr float kSurfaceSlope = 0.35f;
 
 }  // namespace
 
@@ -48,11 +48,11 @@ SignalSample SignalCells::extra(int x, int y) const {
 }
 
 bool SignalCells::connected(std::size_t a, std::size_t b) const {
-  if (glm::dot(load(g_.shading_normal, a), load(g_.shading_normal, b)) < kMinCosine) return false;
+  if (glm::dot(load(g_.shading_normal, a), load(g_.shading_normal, b)) < kSurfaceCosine) return false;
   const Vec3 d = load(g_.position, b) - load(g_.position, a);
   const float distance = std::max(std::abs(glm::dot(d, load(g_.geometric_normal, a))), std::abs(glm::dot(d, load(g_.geometric_normal, b))));
-  return distance <= kMaxPlaneDistance * std::max(g_.depth[a], g_.depth[b]) &&
-         distance * distance <= kMaxSlope * kMaxSlope * length_squared(d);
+  return distance <= kSurfaceDistance * std::max(g_.depth[a], g_.depth[b]) &&
+         distance * distance <= kSurfaceSlope * kSurfaceSlope * length_squared(d);
 }
 
 }  // namespace sightline

@@ -1,11 +1,7 @@
 // What the files of the path kernel share.
 #pragma once
 
-#include <limits>
-
 namespace sightline {
-
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Power heuristic with exponent 2 [Veach1997, §9.2.4]; n light samples against one BSDF sample.
 inline float power_heuristic(float n_pdf, float other) {

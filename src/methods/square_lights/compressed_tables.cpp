@@ -12,7 +12,7 @@
 namespace sightline::square_lights {
 namespace {
 
-constexpr std::size_t kTablesAtOnce = 256;
+constexpr std::size_t kExpandedAtOnce = 256;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ CompressedTables CompressedTables::store(std::span<const std::int8_t> tables, co
       rounded[k * stride + i] = float_from_half(half);
     }
   });
-  parallel_for(context, result.count(), kTablesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, result.count(), kExpandedAtOnce, [&](std::size_t begin, std::size_t end) {
     AlignedVector<float> weights(vectors + 1);
     for (std::size_t i = begin; i < end; ++i) {
       const float* const mean = rounded.data() + result.cluster_[i] * stride;
@@ -70,9 +70,9 @@ void CompressedTables::expand(std::size_t i, std::span<std::int8_t, kTableCells>
 }
 
 double CompressedTables::squared_error(std::span<const std::int8_t> tables, const Context& context) const {
-  const std::size_t chunks = (count() + kTablesAtOnce - 1) / kTablesAtOnce;
+  const std::size_t chunks = (count() + kExpandedAtOnce - 1) / kExpandedAtOnce;
   std::vector<double> sums(chunks, 0);
-  parallel_for(context, count(), kTablesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, count(), kExpandedAtOnce, [&](std::size_t begin, std::size_t end) {
     std::array<std::int8_t, kTableCells> table;
     for (std::size_t i = begin; i < end; ++i) {
       expand(i, table);
@@ -81,7 +81,7 @@ double CompressedTables::squared_error(std::span<const std::int8_t> tables, cons
         const int difference = table[c] - tables[i * kTableCells + c];
         sum += difference * difference;
       }
-      sums[begin / kTablesAtOnce] += static_cast<double>(sum);
+      sums[begin / kExpandedAtOnce] += static_cast<double>(sum);
     }
   });
   double sum = 0;

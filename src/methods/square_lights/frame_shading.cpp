@@ -63,10 +63,10 @@ void take_nearer(FrameShading::Scratch& scratch, std::uint32_t i, float distance
 constexpr std::size_t kMostSplit = 8;
 
 // Light that grazes a vertex of a silhouette: its BRDF is looked up as nearly from the side.
-constexpr float kLeastCosine = 1e-3f;
+constexpr float kLeastViewCosine = 1e-3f;
 
 Vec3 above_surface(Vec3 wo) {
-  if (wo.z < kLeastCosine) wo = normalize_or({wo.x, wo.y, 0}, {1, 0, 0}), wo.z = kLeastCosine;
+  if (wo.z < kLeastViewCosine) wo = normalize_or({wo.x, wo.y, 0}, {1, 0, 0}), wo.z = kLeastViewCosine;
   return wo;
 }
 

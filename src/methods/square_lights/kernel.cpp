@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "shade/material_eval.h"
 
@@ -11,9 +12,6 @@ namespace {
 
 // A block of 4 x 4 pixels makes a packet of 16 rays.
 constexpr int kBlock = 4;
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-void store(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
 
 bool all_simple(const Scene& scene, bool by_vertex) {
   if (!by_vertex || !scene.spheres.empty() || !scene.textures.empty()) return false;

@@ -10,7 +10,7 @@ namespace sightline::square_lights {
 namespace {
 
 constexpr int kAngles = 64;
-constexpr float kHalfPi = kPi / 2, kLog2 = 0.69314718f;
+constexpr float kQuarterTurn = kPi / 2, kLog2 = 0.69314718f;
 /// Half width at half height above which a table does: 5° standard deviation.
 constexpr float kWidest = 0.1f;
 /// Sharpness of each term by that of the second.
@@ -109,7 +109,7 @@ SharpLobe SharpLobe::fit(const Bsdf& bsdf) {
   SharpLobe lobe;
   if (!is_isotropic(bsdf)) return lobe;
   for (int k = 0; k < kAngles; ++k) {
-    const float cosine = std::max(std::cos(kHalfPi * static_cast<float>(k) / (kAngles - 1)), 1e-3f);
+    const float cosine = std::max(std::cos(kQuarterTurn * static_cast<float>(k) / (kAngles - 1)), 1e-3f);
     const Vec3 wo{0, std::sqrt(1 - cosine * cosine), cosine};
     Bsdf prepared = bsdf;
     prepared.prepare(wo);
@@ -124,7 +124,7 @@ SharpLobe::View SharpLobe::view(const Vec3& wo) const {
   View result;
   result.frame = lobe_frame(wo);
   if (views_.empty()) return result;
-  const float place = std::acos(std::clamp(wo.z, 0.f, 1.f)) * ((kAngles - 1) / kHalfPi);
+  const float place = std::acos(std::clamp(wo.z, 0.f, 1.f)) * ((kAngles - 1) / kQuarterTurn);
   const std::size_t first = std::min(static_cast<std::size_t>(place), std::size_t{kAngles - 2});
   const float part = std::min(place - static_cast<float>(first), 1.f);
   const Parameters &a = views_[first], &b = views_[first + 1];

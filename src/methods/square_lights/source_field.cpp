@@ -10,7 +10,7 @@
 namespace sightline::square_lights {
 namespace {
 
-constexpr std::size_t kShellPoints = std::size_t{6} * kSourceSize * kSourceSize;
+constexpr std::size_t kSourceShellPoints = std::size_t{6} * kSourceSize * kSourceSize;
 
 /// Radius of shell k: logarithmic.
 float source_radius(std::size_t k) {
@@ -93,7 +93,7 @@ void SourceField::lights_at(const Vec3& position, std::span<PatchLight> lights) 
   std::array<Sample, 8> samples;
   for (std::size_t k = 0; k < 8; ++k) {
     const std::size_t level = first + k / 4, point = place.point[k % 4];
-    samples[k] = {source_radius(level) * point_direction(point), table_.data() + (level * kShellPoints + point) * count_,
+    samples[k] = {source_radius(level) * point_direction(point), table_.data() + (level * kSourceShellPoints + point) * count_,
                   place.weight[k % 4] * (k / 4 ? part : 1 - part)};
   }
   for (std::size_t i = 0; i < count_; ++i) {
@@ -115,16 +115,16 @@ void SourceField::lights_at(const Vec3& position, std::span<PatchLight> lights) 
   }
 }
 
-std::uint64_t source_field_bytes(const LocalLight& light) { return kSourcePoints * light.count() * sizeof(PackedPatch); }
+std::uint64_t source_field_bytes(const LocalLight& light) { return kSourceShellPoints * light.count() * sizeof(PackedPatch); }
 
 AlignedVector<PackedPatch> bake_source_field(const LocalLight& light, const Context& context) {
   const std::size_t count = light.count();
-  AlignedVector<PackedPatch> table(kSourcePoints * count);
+  AlignedVector<PackedPatch> table(kSourceShellPoints * count);
   const float radius = light.radius() > 0 ? light.radius() : 1.f;
-  parallel_for(context, kSourcePoints, 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, kSourceShellPoints, 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<PatchLight> lights(count);
     for (std::size_t point = begin; point < end; ++point) {
-      const Vec3 from = source_radius(point / kShellPoints) * point_direction(point % kShellPoints);
+      const Vec3 from = source_radius(point / kSourceShellPoints) * point_direction(point % kSourceShellPoints);
       light.lights_at(light.center() + radius * from, lights);
       for (std::size_t i = 0; i < count; ++i) {
         const PatchLight& p = lights[i];

@@ -8,8 +8,8 @@
 namespace sightline::square_lights {
 namespace {
 
-constexpr int kCorners = kTableSize + 1;
-using Corners = std::array<float, std::size_t{kCorners} * kCorners>;
+constexpr int kTableCorners = kTableSize + 1;
+using Corners = std::array<float, std::size_t{kTableCorners} * kTableCorners>;
 
 /// Integrals over all cells left of and above each corner, in cells.
 void sum_up(TableView table, Corners& corners) {
@@ -20,8 +20,8 @@ void sum_up(TableView table, Corners& corners) {
     for (int x = 0; x < kTableSize; ++x) {
       const float d = decode_distance(table[static_cast<std::size_t>(y * kTableSize + x)]);
       row += std::clamp(0.5f + d / cell, 0.f, 1.f);
-      const auto at = static_cast<std::size_t>((y + 1) * kCorners + x + 1);
-      corners[at] = corners[at - kCorners] + row;
+      const auto at = static_cast<std::size_t>((y + 1) * kTableCorners + x + 1);
+      corners[at] = corners[at - kTableCorners] + row;
     }
   }
 }
@@ -31,9 +31,9 @@ float corner_at(const Corners& corners, float x, float y) {
               gy = std::clamp((y + 1) * 0.5f * kTableSize, 0.f, float{kTableSize});
   const int ix = std::min(static_cast<int>(gx), kTableSize - 1), iy = std::min(static_cast<int>(gy), kTableSize - 1);
   const float tx = gx - static_cast<float>(ix), ty = gy - static_cast<float>(iy);
-  const auto at = static_cast<std::size_t>(iy * kCorners + ix);
+  const auto at = static_cast<std::size_t>(iy * kTableCorners + ix);
   return (1 - ty) * ((1 - tx) * corners[at] + tx * corners[at + 1]) +
-         ty * ((1 - tx) * corners[at + kCorners] + tx * corners[at + kCorners + 1]);
+         ty * ((1 - tx) * corners[at + kTableCorners] + tx * corners[at + kTableCorners + 1]);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr int kFirstSweeps = 12, kLaterSweeps = 6;
 constexpr std::size_t kNear = 16;
 // k-means++ looks at this many tables for each cluster, spread over all.
 constexpr std::size_t kSeedsPerCluster = 16;
-constexpr std::size_t kTablesAtOnce = 64;
+constexpr std::size_t kAssignedAtOnce = 64;
 
 using Tables = std::span<const std::int8_t>;
 const std::int8_t* table_of(Tables tables, std::size_t i) { return tables.data() + i * kTableCells; }
@@ -51,7 +51,7 @@ AlignedVector<float> first_means(Tables tables, std::size_t clusters, std::uint6
   for (std::size_t k = 0; k < clusters; ++k) {
     float* const mean = means.data() + k * kTableCells;
     std::copy_n(table_of(tables, chosen * step), kTableCells, mean);
-    parallel_for(context, candidates, kTablesAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, candidates, kAssignedAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         float d;
         table_distances(table_of(tables, i * step), mean, 1, &d);
@@ -110,7 +110,7 @@ std::vector<std::uint16_t> k_means(Tables tables, AlignedVector<float>& means, S
   std::vector<float> misfit(count);
   for (int round = 0; round < kMeansRounds; ++round) {
     std::atomic<bool> changed{round == 0};
-    parallel_for(context, count, kTablesAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, count, kAssignedAtOnce, [&](std::size_t begin, std::size_t end) {
       AlignedVector<float> distances(clusters);
       for (std::size_t i = begin; i < end; ++i) {
         table_distances(table_of(tables, i), means.data(), clusters, distances.data());
@@ -152,7 +152,7 @@ void assign(Tables tables, bool all, std::size_t vectors, TableClusters& result,
     std::copy(result.components[k].mean.begin(), result.components[k].mean.end(),
               means.begin() + static_cast<std::ptrdiff_t>(k * kTableCells));
   std::vector<float> misfit(count);
-  parallel_for(context, count, kTablesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, count, kAssignedAtOnce, [&](std::size_t begin, std::size_t end) {
     AlignedVector<float> distances(clusters), dots(vectors + 1);
     std::vector<std::size_t> order(clusters);
     for (std::size_t i = begin; i < end; ++i) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/media.h"
 #include "methods/shadow_terminator.h"
@@ -16,13 +16,9 @@ namespace {
 
 using dimension::pair_of;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kBlockSize = 4;          // a block of 4x4 pixels makes a packet of 16 rays
-constexpr std::size_t kBatch = 1024;   // paths traced together, a multiple of kLanes
-constexpr float kLeastCosine = 0.05f;  // grazing surfaces are not let grow without bound
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-void add(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] += v.x, batch.y[i] += v.y, batch.z[i] += v.z; }
+constexpr int kBlockSize = 4;             // a block of 4x4 pixels makes a packet of 16 rays
+constexpr std::size_t kPathBatch = 1024;  // paths traced together, a multiple of kLanes
+constexpr float kLeastCosine = 0.05f;     // grazing surfaces are not let grow without bound
 
 // For `count` rays, keeping what is there: batches grow and shrink from wave to wave.
 void reserve(RayBatch& rays, std::size_t count) {
@@ -34,19 +30,19 @@ bool sees_alike(const Vec3& shading, const Vec3& geometric, const Vec3& directio
   return glm::dot(direction, shading) * glm::dot(direction, geometric) > 0;
 }
 
-/// What a branch of a path carries from one surface to the next.
-struct Branch {
-  Color throughput{1};
-  float radiance_scale = 1;  ///< product of the eta² by which refraction divided the throughput
-  float cone_width = 0;
-  std::uint32_t slot = 0, turns = 0;  ///< EyeSample::slot, branch
-  MediumId medium;
-  RayDifferential pixel, lens;
-};
-
 }  // namespace
 
 struct EyePaths::Impl {
+  /// What a branch of a path carries from one surface to the next.
+  struct Branch {
+    Color throughput{1};
+    float radiance_scale = 1;  ///< product of the eta² by which refraction divided the throughput
+    float cone_width = 0;
+    std::uint32_t slot = 0, turns = 0;  ///< EyeSample::slot, branch
+    MediumId medium;
+    RayDifferential pixel, lens;
+  };
+
   Impl(const World& w, const View& v, const EyePathOptions& o);
 
   void start(const Tile& tile, SampleRange range, TilePaths& paths);
@@ -103,7 +99,7 @@ EyePaths::Impl::Impl(const World& w, const View& v, const EyePathOptions& o)
   }
   const float radius = world_.bounds().half_diagonal();
   largest_area_ = radius * radius, least_area_ = 1e-12f * largest_area_;
-  reserve(rays_, kBatch), u0_.resize(kBatch), u1_.resize(kBatch), u2_.resize(kBatch), u3_.resize(kBatch);
+  reserve(rays_, kPathBatch), u0_.resize(kPathBatch), u1_.resize(kPathBatch), u2_.resize(kPathBatch), u3_.resize(kPathBatch);
 }
 
 // All paths of the tile. The packet that a camera ray travels in is made of its block and sample alone.
@@ -164,7 +160,7 @@ void EyePaths::Impl::draw_mix_numbers(int depth, const TilePaths& paths) {
   sobol_2d(key_.data(), index_.data(), pair, count, u0_.data(), u1_.data());
 }
 
-Branch EyePaths::Impl::first_branch(std::size_t i) const {
+EyePaths::Impl::Branch EyePaths::Impl::first_branch(std::size_t i) const {
   Branch branch;
   branch.slot = static_cast<std::uint32_t>(first_path_ + i);
   branch.cone_width = view_.cone_width();
@@ -366,8 +362,8 @@ void EyePaths::trace(const Tile& tile, SampleRange range, std::uint32_t pass_sam
   impl.samples_ = &eye_samples;
   eye_samples.clear();
   impl.start(tile, range, paths);
-  for (impl.first_path_ = 0; impl.first_path_ < paths.count; impl.first_path_ += kBatch) {
-    impl.start_rays(paths, std::min(kBatch, paths.count - impl.first_path_));
+  for (impl.first_path_ = 0; impl.first_path_ < paths.count; impl.first_path_ += kPathBatch) {
+    impl.start_rays(paths, std::min(kPathBatch, paths.count - impl.first_path_));
     const std::size_t first_sample = eye_samples.size();
     std::size_t after_first_wave = first_sample;
     const int last = impl.options_.max_depth + (impl.shines_ ? 1 : 0);
@@ -380,7 +376,7 @@ void EyePaths::trace(const Tile& tile, SampleRange range, std::uint32_t pass_sam
       std::swap(impl.branches_, impl.next_branches_), std::swap(impl.rays_, impl.next_rays_);
       if (depth == 0) after_first_wave = eye_samples.size();
     }
-    reserve(impl.rays_, kBatch);
+    reserve(impl.rays_, kPathBatch);
     if (eye_samples.size() > after_first_wave) impl.sort_by_path(first_sample);
   }
 }

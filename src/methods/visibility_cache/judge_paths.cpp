@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "base/sample/warp.h"
 #include "methods/media.h"
@@ -12,14 +12,11 @@
 namespace sightline::vpl {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kBatch = 256;
+constexpr std::size_t kJudgeBatch = 256;
 
 // Pairs of random numbers of each surface of a path; direction: of the ray that leads there. Of kPick: light, mix.
-enum SurfacePair : std::uint32_t { kDirection, kPick, kPoint, kRoulette, kSurfacePairs };
-constexpr std::uint32_t pair_of(int surface, SurfacePair use) { return kSurfacePairs * static_cast<std::uint32_t>(surface) + use; }
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
+enum JudgePathPair : std::uint32_t { kDirection, kPick, kPoint, kRoulette, kSurfacePairs };
+constexpr std::uint32_t judge_pair(int surface, JudgePathPair use) { return kSurfacePairs * static_cast<std::uint32_t>(surface) + use; }
 
 // The judge that path `path` of `count` starts from: each gets its share, and none more than one above it.
 std::uint32_t judge_of(std::size_t path, std::size_t count, float offset, std::size_t judges) {
@@ -28,7 +25,7 @@ std::uint32_t judge_of(std::size_t path, std::size_t count, float offset, std::s
 }
 
 /// A path that goes on.
-struct Path {
+struct OpenPath {
   std::uint32_t index = 0;
   MediumId medium;
   Candidate candidate;   ///< on its first surface, as far as it is known
@@ -56,19 +53,19 @@ class JudgePathTracer {
   }
 
  private:
-  Vec2 random(const Path& path, SurfacePair use) const { return sobol_2d(options_.key, path.index, pair_of(path.surfaces, use)); }
+  Vec2 random(const OpenPath& path, JudgePathPair use) const { return sobol_2d(options_.key, path.index, judge_pair(path.surfaces, use)); }
   void start(std::span<const std::uint32_t> judge, std::uint32_t first);
   void travel(RayCounts& counts);
   void arrive();
   void connect(std::vector<Candidate>& candidates, RayCounts& counts);
-  void add_light(const Path& path, const LightSample& light);
+  void add_light(const OpenPath& path, const LightSample& light);
   void go_on();
 
   const World& world_;
   SurfaceReader reader_;
   std::span<const Judge> judges_;
   JudgePathOptions options_;
-  std::vector<Path> paths_;  // one a ray
+  std::vector<OpenPath> paths_;  // one a ray
   RayBatch rays_, shadow_;
   HitBatch hits_;
   SurfaceBatch surfaces_;
@@ -79,11 +76,11 @@ class JudgePathTracer {
 };
 
 void JudgePathTracer::start(std::span<const std::uint32_t> judge, std::uint32_t first) {
-  paths_.assign(judge.size(), Path());
+  paths_.assign(judge.size(), OpenPath());
   rays_.resize(judge.size());
   for (std::size_t i = 0; i < judge.size(); ++i) {
     const Judge& from = judges_[judge[i]];
-    Path& path = paths_[i];
+    OpenPath& path = paths_[i];
     path.index = first + static_cast<std::uint32_t>(i);
     path.medium = from.medium;
     path.candidate.judge = judge[i];
@@ -111,7 +108,7 @@ void JudgePathTracer::arrive() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     if (!hits_.hit(i)) continue;
-    Path& path = paths_[i];
+    OpenPath& path = paths_[i];
     path.surface = reader_.read(rays_, hits_, surfaces_, i, 0, random(path, kPick).y);
     path.wo = -load(rays_.direction, i);
     if (path.surface.bsdf.is_delta()) continue;
@@ -125,7 +122,7 @@ void JudgePathTracer::arrive() {
 void JudgePathTracer::connect(std::vector<Candidate>& candidates, RayCounts& counts) {
   found_.clear(), shadow_medium_.clear();
   shadow_.resize(paths_.size());
-  for (const Path& path : paths_) {
+  for (const OpenPath& path : paths_) {
     const LightSample light =
         world_.lights().sample(path.surface.position, path.surface.geometric_normal, random(path, kPick).x, random(path, kPoint));
     if (light.pdf > 0 && !is_black(light.radiance)) add_light(path, light);
@@ -149,7 +146,7 @@ double particle_factor(const SurfacePoint& surface, const Vec3& wi, const Vec3& 
   return leaving > 0 ? static_cast<double>(light_turn_pdf(surface, wi, wo)) * static_cast<double>(arriving) / leaving : 0;
 }
 
-void JudgePathTracer::add_light(const Path& path, const LightSample& light) {
+void JudgePathTracer::add_light(const OpenPath& path, const LightSample& light) {
   const SurfacePoint& surface = path.surface;
   const float side = glm::dot(surface.geometric_normal, light.wi), seen = glm::dot(surface.geometric_normal, path.wo);
   if (side == 0 || (side * seen <= 0 && !is_translucent(surface.bsdf))) return;
@@ -187,14 +184,14 @@ void JudgePathTracer::go_on() {
   std::size_t kept = 0;
   rays_.resize(paths_.size());
   for (std::size_t i = 0; i < paths_.size(); ++i) {
-    Path path = paths_[i];
+    OpenPath path = paths_[i];
     const SurfacePoint& surface = path.surface;
     // Directions are cosine-distributed on the side that is seen, so what lies behind translucent surfaces is for particles alone.
     if (path.surfaces + 1 >= options_.max_bounces || is_translucent(surface.bsdf)) continue;
     const float survival = std::clamp(max_component(surface.bsdf.albedo()), 0.05f, 0.95f);
     if (random(path, kRoulette).x >= survival) continue;
     const Vec3 normal = glm::dot(surface.geometric_normal, path.wo) < 0 ? -surface.geometric_normal : surface.geometric_normal;
-    const Vec2 u = sobol_2d(options_.key, path.index, pair_of(path.surfaces + 1, kDirection));
+    const Vec2 u = sobol_2d(options_.key, path.index, judge_pair(path.surfaces + 1, kDirection));
     const Vec3 wi = frame_from_normal(normal).to_world(sample_cosine_hemisphere(u));
     const float cosine = glm::dot(normal, wi);
     if (!(cosine > 0)) continue;
@@ -224,10 +221,10 @@ std::vector<Candidate> trace_judge_paths(const World& world, std::span<const Jud
   const float offset = sobol_2d(hash32(options.key), first / static_cast<std::uint32_t>(count), 0).x;
   std::vector<std::uint32_t> judge(count);
   for (std::size_t i = 0; i < count; ++i) judge[i] = judge_of(i, count, offset, judges.size());
-  std::vector<std::vector<Candidate>> found((count + kBatch - 1) / kBatch);
-  for_counted_chunks(count, kBatch, context, rays, [&](std::size_t begin, std::size_t end, RayCounts& counts) {
+  std::vector<std::vector<Candidate>> found((count + kJudgeBatch - 1) / kJudgeBatch);
+  for_counted_chunks(count, kJudgeBatch, context, rays, [&](std::size_t begin, std::size_t end, RayCounts& counts) {
     JudgePathTracer(world, judges, options)
-        .trace(std::span(judge).subspan(begin, end - begin), first + static_cast<std::uint32_t>(begin), found[begin / kBatch], counts);
+        .trace(std::span(judge).subspan(begin, end - begin), first + static_cast<std::uint32_t>(begin), found[begin / kJudgeBatch], counts);
   });
   std::vector<Candidate> candidates;
   for (const std::vector<Candidate>& some : found) candidates.insert(candidates.end(), some.begin(), some.end());

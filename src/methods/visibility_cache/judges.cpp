@@ -1,22 +1,18 @@
 #include "methods/visibility_cache/judges.h"
 
-#include <limits>
-
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/media.h"
 
 namespace sightline::vpl {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kMaxDepth = 16;  // mirrors and panes one after the other
 
 // Pairs of random numbers.
-enum Pair : std::uint32_t { kPicture, kLens, kFirstSurface };
+enum JudgePair : std::uint32_t { kPicture, kLens, kJudgeSurface };
 
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-
-struct Path {
+struct JudgeSearch {
   std::uint32_t index = 0;
   Color weight{1};
   MediumId medium;
@@ -26,7 +22,7 @@ struct Path {
 
 std::vector<Judge> find_judges(const World& world, const View& view, std::uint32_t key, std::uint32_t first, std::size_t count,
                                RayCounts& rays) {
-  std::vector<Path> paths(count);
+  std::vector<JudgeSearch> paths(count);
   RayBatch batch;
   HitBatch hits;
   SurfaceBatch surfaces;
@@ -44,7 +40,7 @@ std::vector<Judge> find_judges(const World& world, const View& view, std::uint32
   MediumRays medium_rays(world);
   const bool travels = medium_rays.media().any() || medium_rays.media().any_interface();
   const MediumId around = medium_rays.around_camera(view);
-  for (Path& path : paths) path.medium = around;
+  for (JudgeSearch& path : paths) path.medium = around;
   std::vector<MediumId> medium;
   for (int depth = 0; depth < kMaxDepth && !paths.empty(); ++depth) {
     world.tracer().intersect(batch, hits, depth == 0 ? BatchKind::primary : BatchKind::bounce, rays);
@@ -58,9 +54,9 @@ std::vector<Judge> find_judges(const World& world, const View& view, std::uint32
     std::size_t kept = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (!hits.hit(i)) continue;
-      Path path = paths[i];
+      JudgeSearch path = paths[i];
       const Vec3 direction = load(batch.direction, i);
-      const std::uint32_t pair = kFirstSurface + 2 * static_cast<std::uint32_t>(depth);
+      const std::uint32_t pair = kJudgeSurface + 2 * static_cast<std::uint32_t>(depth);
       const Vec2 lobe = sobol_2d(key, path.index, pair);
       const SurfacePoint surface = reader.read(batch, hits, surfaces, i, view.cone_width() + view.cone_spread() * hits.t[i], lobe.y);
       const Vec3 normal = glm::dot(surface.geometric_normal, direction) > 0 ? -surface.geometric_normal : surface.geometric_normal;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
 #include "base/sample/sobol.h"
 #include "methods/media.h"
@@ -11,18 +11,15 @@
 namespace sightline::vpl {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kBatch = 256;
+constexpr std::size_t kParticleBatch = 256;
 constexpr int kRouletteStart = 2;  ///< surfaces that particles reach unharmed
 
 // Pairs of random numbers of a particle.
-enum Pair : std::uint32_t { kPick, kPoint, kDirection, kFirstSurface };
-enum SurfacePair : std::uint32_t { kMix, kLobe, kTurn, kSurfacePairs };  // of kLobe: lobe, roulette
-constexpr std::uint32_t pair_of(int surface, SurfacePair use) {
-  return kFirstSurface + kSurfacePairs * static_cast<std::uint32_t>(surface) + use;
+enum ParticlePair : std::uint32_t { kEmitter, kEmission, kEmitted, kParticleSurface };
+enum ParticleSurfacePair : std::uint32_t { kMix, kLobe, kTurn, kParticleSurfacePairs };  // of kLobe: lobe, roulette
+constexpr std::uint32_t particle_pair(int surface, ParticleSurfacePair use) {
+  return kParticleSurface + kParticleSurfacePairs * static_cast<std::uint32_t>(surface) + use;
 }
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 struct Particle {
   std::uint32_t index = 0;
@@ -78,8 +75,8 @@ void ParticleTracer::emit(std::uint32_t first, std::size_t count, RayCounts& cou
   for (std::size_t i = 0; i < count; ++i) {
     Particle particle;
     particle.index = first + static_cast<std::uint32_t>(i);
-    particle.emission = world_.lights().sample_emission(random(particle.index, kPick).x, random(particle.index, kPoint),
-                                                        random(particle.index, kDirection));
+    particle.emission = world_.lights().sample_emission(random(particle.index, kEmitter).x, random(particle.index, kEmission),
+                                                        random(particle.index, kEmitted));
     const EmissionSample& s = particle.emission;
     if (!(s.pdf.start > 0) || !(s.pdf.leave > 0)) continue;
     const bool is_surface = !is_black(s.normal);
@@ -140,7 +137,7 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
     if (!is_finite(particle.beta) || is_black(particle.beta)) continue;
 
     ParticleVertex vertex;
-    vertex.surface = reader_.read(rays_, hits_, surfaces_, i, 0, has_mix_ ? random(particle.index, pair_of(surface, kMix)).x : 0.f);
+    vertex.surface = reader_.read(rays_, hits_, surfaces_, i, 0, has_mix_ ? random(particle.index, particle_pair(surface, kMix)).x : 0.f);
     vertex.wi = -direction;
     vertex.beta = particle.beta;
     if (!vertex.surface.bsdf.is_delta()) {
@@ -157,8 +154,8 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
     }
     if (surface + 1 == options_.max_bounces) continue;
 
-    const Vec2 lobe = random(particle.index, pair_of(surface, kLobe));
-    const std::optional<Turn> turn = turn_light(vertex.surface, vertex.wi, lobe.x, random(particle.index, pair_of(surface, kTurn)));
+    const Vec2 lobe = random(particle.index, particle_pair(surface, kLobe));
+    const std::optional<Turn> turn = turn_light(vertex.surface, vertex.wi, lobe.x, random(particle.index, particle_pair(surface, kTurn)));
     if (!turn) continue;
     particle.beta *= turn->weight;
     const float leaving = std::fabs(glm::dot(turn->direction, vertex.surface.geometric_normal));
@@ -184,13 +181,14 @@ void ParticleTracer::arrive_and_scatter(int surface, std::vector<ParticleVertex>
 
 std::vector<ParticleVertex> trace_particles(const World& world, const ParticleOptions& options, std::uint32_t first, std::size_t count,
                                             const Context& context, RayCounts& rays) {
-  const std::size_t batches = (count + kBatch - 1) / kBatch;
+  const std::size_t batches = (count + kParticleBatch - 1) / kParticleBatch;
   std::vector<std::vector<ParticleVertex>> found(batches);
   std::vector<RayCounts> counts(batches);
   parallel_for(context, batches, 1, [&](std::size_t begin, std::size_t end) {
     ParticleTracer tracer(world, options);
     for (std::size_t b = begin; b < end; ++b)
-      tracer.trace(first + static_cast<std::uint32_t>(b * kBatch), std::min(kBatch, count - b * kBatch), found[b], counts[b]);
+      tracer.trace(first + static_cast<std::uint32_t>(b * kParticleBatch), std::min(kParticleBatch, count - b * kParticleBatch), found[b],
+                   counts[b]);
   });
   std::vector<ParticleVertex> vertices;
   for (std::size_t b = 0; b < batches; ++b) {

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "base/math/vec3_batch.h"
 #include "shade/material_eval.h"
 
 namespace sightline::vpl {
 namespace {
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 bool agrees(const Vec3& shading, const Vec3& geometric, const Vec3& w) { return glm::dot(w, shading) * glm::dot(w, geometric) > 0; }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/visibility_cache/judge_paths.h"
 #include "methods/visibility_cache/vpl_candidates.h"
@@ -29,9 +30,6 @@ struct Survivor {
   std::uint32_t candidate;
   float scale;
 };
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
-void store(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
 
 std::uint64_t spread_bits(std::uint32_t x) {
   std::uint64_t v = x & 0x1fffff;

@@ -32,7 +32,7 @@ struct IsosurfaceSettings {
 };
 
 /// Triangles that a chunk aims for, below the 2^16 that MeshSource allows.
-constexpr std::uint64_t kChunkTriangles = 49152;
+constexpr std::uint64_t kSurfaceChunk = 49152;
 
 /// Grid cells [z_begin, z_end) x [y_begin, y_end) x all x.
 struct Brick {
@@ -156,7 +156,7 @@ class IsosurfaceSource final : public MeshSource {
         brick.triangles += static_cast<std::uint32_t>(counts[y].triangles);
         brick.vertices += static_cast<std::uint32_t>(counts[y].to_next_row + counts[y + 1].at_row);
         ++y;
-      } while (y < n && brick.triangles + counts[y].triangles <= kChunkTriangles);
+      } while (y < n && brick.triangles + counts[y].triangles <= kSurfaceChunk);
       brick.y_end = static_cast<int>(y);
       if (brick.triangles > 0) bricks.push_back(brick);
     }

@@ -28,7 +28,7 @@ struct PlantSettings {
 
 constexpr float kUnitEdge = 14;  ///< metres from one unit to the next
 constexpr std::size_t kVariants = 8;
-constexpr std::size_t kChunkTriangles = 60000;
+constexpr std::size_t kPlantChunk = 60000;
 
 /// One unit's geometry, grown part by part until it has the wanted number of triangles.
 class UnitMaker {
@@ -41,8 +41,8 @@ class UnitMaker {
     if (full()) return;
     std::array<std::uint32_t, 8> corner{};
     for (std::size_t c = 0; c < 8; ++c) corner[c] = add({c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z});
-    static constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : kFaces) {
+    static constexpr int kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& f : kBoxFaces) {
       const auto at = [&](int i) { return corner[static_cast<std::size_t>(f[i])]; };
       chunk_.triangles.emplace_back(at(0), at(1), at(2));
       chunk_.triangles.emplace_back(at(0), at(2), at(3));
@@ -170,7 +170,7 @@ Plan make_plan(const PlantSettings& s) {
   Plan plan;
   std::uint64_t sum = 0;
   for (std::size_t v = 0; v < kVariants; ++v) {
-    plan.units.push_back(make_unit(s.seed, v, std::min<std::uint64_t>(s.triangles, kChunkTriangles)));
+    plan.units.push_back(make_unit(s.seed, v, std::min<std::uint64_t>(s.triangles, kPlantChunk)));
     sum += plan.units.back().triangles.size();
   }
   const std::uint64_t count = std::max<std::uint64_t>(1, (s.triangles * kVariants + sum / 2) / sum);

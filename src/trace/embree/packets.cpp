@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 
 namespace sightline {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // By BatchKind: primary, shadow, shadow_diffuse, bounce; the fastest of single, 8- and 16-wide calls with either flag in `sightline bench
 // trace`. Coherent packets of shadow rays pay where triangles are large beside the packet (Sponza: 1.5 times the rays), and cost up to half

@@ -13,6 +13,9 @@
 
 namespace sightline {
 
+/// Of a query, where answers are corrected by rays: it had a ray of its own; its cell was refined.
+inline constexpr std::uint8_t kMarkTraced = 1, kMarkEdge = 2;
+
 struct CacheCore {
   CacheCore(std::shared_ptr<const World> w, const CachedVisibilitySettings& s)
       : world(std::move(w)), settings(s), quantizer(world->bounds(), settings) {}

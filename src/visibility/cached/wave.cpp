@@ -9,7 +9,6 @@ namespace sightline {
 namespace {
 
 constexpr std::size_t kChunk = 4096;  // queries whose results stay in the cache of a core
-constexpr std::uint8_t kTraced = 1, kEdge = 2;
 
 }  // namespace
 
@@ -74,14 +73,14 @@ void CachedWave::look_up_range(Slot& own, Scratch& scratch, std::size_t group, L
     LookUpResult& result = scratch.result;
     look_up_lanes(look_up, own.weights.data(), result);
 
-    if (level == 0) counts.queries += result.asked + result.exacts;
+    if (level == 0) counts.queries += result.asked + result.exacts + result.passed_on;
     counts.lookups += result.lookups, counts.rejected += result.rejected, counts.cached += result.answered;
     counts.answered_at_depth[static_cast<std::size_t>(level)] += result.answered;
     for (std::size_t k = 0; k < result.misses; ++k)
       scratch.misses.push_back({result.miss_id[k], result.miss_index[k], result.miss_tag[k], static_cast<std::uint32_t>(level)});
     own.keyless.insert(own.keyless.end(), result.exact_id.begin(), result.exact_id.begin() + static_cast<std::ptrdiff_t>(result.exacts));
     if (core_->settings.residual > 0) {
-      for (std::size_t k = 0; k < result.refines; ++k) own.mark[result.refine_id[k]] = kEdge;
+      for (std::size_t k = 0; k < result.refines; ++k) own.mark[result.refine_id[k]] = kMarkEdge;
     }
     range = {};
     range.count = result.refines;
@@ -172,7 +171,7 @@ void CachedWave::trace_slot(std::size_t slot) {
       const bool visible = !occluded[k];
       own.weights[some[k].query] = visible ? 1.f : 0.f;
       if (some[k].part < kParts) parts_[some[k].part].keys[some[k].key].visible = visible;
-      if (core_->settings.residual > 0) own.mark[some[k].query] = kTraced;
+      if (core_->settings.residual > 0) own.mark[some[k].query] = kMarkTraced;
     }
   }
   if (core_->settings.residual > 0) trace_residual(own, tracer);
@@ -183,8 +182,8 @@ void CachedWave::trace_residual(Slot& own, QueryTracer& tracer) const {
   const ResidualChoice choice(core_->settings, core_->pass);
   std::vector<std::uint32_t> which;
   for (std::uint32_t i = 0; i < queries.size; ++i) {
-    if (queries.light_of[i] == kNoQuery || own.mark[i] == kTraced) continue;
-    const float p = choice.probability(own.mark[i] == kEdge);
+    if (queries.light_of[i] == kNoQuery || own.mark[i] == kMarkTraced) continue;
+    const float p = choice.probability(own.mark[i] == kMarkEdge);
     if (!choice.taken(queries, i, p)) continue;
     which.push_back(i);
     own.corrections.push_back({i, p, false});

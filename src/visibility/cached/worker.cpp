@@ -6,7 +6,6 @@
 namespace sightline {
 namespace {
 
-constexpr std::uint8_t kTraced = 1, kEdge = 2;
 constexpr std::size_t kResidualPacket = 1024;
 
 }  // namespace
@@ -77,11 +76,11 @@ void CachedWorker::answer(const Batch& batch, std::size_t group, Range range) {
   for (int level = 0; level < levels && range.count > 0; ++level) {
     look_up_lanes(look_up_of(group, level, range), batch.weights.data(), result_);
     // A query is counted where it begins.
-    if (level == 0) counts.queries += result_.asked + result_.exacts;
+    if (level == 0) counts.queries += result_.asked + result_.exacts + result_.passed_on;
     counts.lookups += result_.lookups, counts.rejected += result_.rejected;
     counts.cached += result_.answered, counts.answered_at_depth[static_cast<std::size_t>(level)] += result_.answered;
     if (core_->settings.residual > 0 && level == 0) {
-      for (std::size_t k = 0; k < result_.refines; ++k) mark_[result_.refine_id[k]] = kEdge;
+      for (std::size_t k = 0; k < result_.refines; ++k) mark_[result_.refine_id[k]] = kMarkEdge;
     }
 
     duplicates_.count = 0;
@@ -126,7 +125,7 @@ void CachedWorker::trace_misses(const Batch& batch, int level) {
     }
   }
   if (core_->settings.residual > 0) {
-    for (std::size_t k = 0; k < rays; ++k) mark_[which_[k]] = kTraced;
+    for (std::size_t k = 0; k < rays; ++k) mark_[which_[k]] = kMarkTraced;
   }
   batch.counts.cached += duplicates_.count;
   batch.counts.answered_at_depth[static_cast<std::size_t>(level)] += duplicates_.count;
@@ -143,7 +142,7 @@ void CachedWorker::resolve_duplicates(const Batch& batch, std::size_t group, int
   batch.counts.cached -= again_.refines;
   batch.counts.answered_at_depth[static_cast<std::size_t>(level)] -= again_.refines;
   if (core_->settings.residual > 0) {
-    for (std::size_t k = 0; k < again_.refines; ++k) mark_[again_.refine_id[k]] = kEdge;
+    for (std::size_t k = 0; k < again_.refines; ++k) mark_[again_.refine_id[k]] = kMarkEdge;
   }
   const std::size_t before = next_.count;
   next_.count += again_.refines;
@@ -164,14 +163,14 @@ void CachedWorker::add_residual(const Batch& batch) {
     const std::span<const std::uint8_t> occluded = tracer_.trace(queries, std::span(which_).first(count), batch.rays, batch.counts);
     for (std::size_t k = 0; k < count; ++k) {
       float& weight = batch.weights[which_[k]];
-      weight += ((occluded[k] ? 0.f : 1.f) - weight) / choice.probability(mark_[which_[k]] == kEdge);
+      weight += ((occluded[k] ? 0.f : 1.f) - weight) / choice.probability(mark_[which_[k]] == kMarkEdge);
     }
     batch.counts.residual += count;
     count = 0;
   };
   for (std::uint32_t i = 0; i < queries.size; ++i) {
-    if (queries.light_of[i] == kNoQuery || mark_[i] == kTraced) continue;
-    if (!choice.taken(queries, i, choice.probability(mark_[i] == kEdge))) continue;
+    if (queries.light_of[i] == kNoQuery || mark_[i] == kMarkTraced) continue;
+    if (!choice.taken(queries, i, choice.probability(mark_[i] == kMarkEdge))) continue;
     which_[count++] = i;
     if (count == kResidualPacket) flush();
   }

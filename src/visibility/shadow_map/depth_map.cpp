@@ -5,11 +5,7 @@
 #include "base/math/frame.h"
 
 namespace sightline {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 DepthMap::DepthMap(std::uint32_t resolution, std::uint32_t faces)
     : resolution_(resolution),

@@ -10,32 +10,12 @@
 #include "base/sample/sobol.h"
 #include "shade/lambert.h"
 #include "support/chi_square.h"
+#include "support/every_target.h"
 
 namespace sightline::test {
 namespace {
 
 constexpr std::size_t kCount = 1000;
-
-/// Pins Highway to one target for its life.
-class PinnedTarget {
- public:
-  explicit PinnedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~PinnedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> result;
-  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}}) {
-    if (hwy::SupportedTargets() & target) result.push_back(target);
-  }
-  return result;
-}
 
 void put(Vec3Batch& batch, std::size_t i, const Vec3& v) { batch.x[i] = v.x, batch.y[i] = v.y, batch.z[i] = v.z; }
 Vec3 at(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
@@ -147,7 +127,7 @@ TEST(LambertLanes, OneSampleAPointEqualsTheScalarPath) {
   const Setting s(1);
   AlignedVector<std::uint8_t> active(padded(kCount), 1);
   for (std::size_t i = 0; i < kCount; i += 3) active[i] = 0;
-  for (const std::int64_t target : targets()) {
+  for (const std::int64_t target : simd_targets()) {
     const PinnedTarget pinned(target);
     for (const DirectLightOptions& options : kOptions) {
       ShadowLanes out;
@@ -166,7 +146,7 @@ TEST(LambertLanes, OneSampleAPointEqualsTheScalarPath) {
 
 TEST(LambertLanes, ManySamplesOfAPointEqualTheScalarPath) {
   const Setting s(2);
-  for (const std::int64_t target : targets()) {
+  for (const std::int64_t target : simd_targets()) {
     const PinnedTarget pinned(target);
     for (const DirectLightOptions& options : kOptions) {
       ShadowLanes out;
@@ -196,7 +176,7 @@ TEST(LambertLanes, DirectionsAreTheScalarOnesInTheFrameOfTheNormal) {
   // The corners and the centre of the square, where the map from square to disk has its seams.
   const float special[] = {0, 0.5f, 0x1.fffffep-1f};
   for (std::size_t i = 0; i < 9; ++i) u[i] = special[i % 3], v[i] = special[i / 3];
-  for (const std::int64_t target : targets()) {
+  for (const std::int64_t target : simd_targets()) {
     const PinnedTarget pinned(target);
     Vec3Batch wi;
     wi.resize(kCount);
@@ -229,7 +209,7 @@ TEST(LambertLanes, DirectionsAreTheScalarOnesInTheFrameOfTheNormal) {
 
 TEST(LambertLanes, DirectionsFollowTheirDensity) {
   constexpr std::size_t kSamples = 200000;
-  const std::vector<std::int64_t> all = targets();
+  const std::vector<std::int64_t> all = simd_targets();
   const Vec3 normals[] = {{0, 0, 1}, {0, 0, -1}, glm::normalize(Vec3(1, 2, -0.5f))};
   for (const std::int64_t target : all) {
     const PinnedTarget pinned(target);

@@ -82,16 +82,16 @@ TEST(NicholsRule, AFragmentBesideTwoThatDifferAcrossTheirCornerSplitsThoughItDif
   EXPECT_FALSE(nichols_splits(cells, 6));
 }
 
-struct Refined {
+struct NicholsRefined {
   LightSignal signal;
   RefinementCounts counts;
 };
-Refined refine(Stage& stage, int threads, int channels = 3) {
+NicholsRefined refine(Stage& stage, int threads, int channels = 3) {
   Context context;
   context.threads = threads;
   FragmentOptions options;
   options.refine = FragmentOptions::Refine::neighbours;
-  Refined refined;
+  NicholsRefined refined;
   refined.signal.resize(stage.g, channels);
   const LightPoints points = light_points(stage.shot.world->lights(), stage.lights[0], 64, 0);
   std::vector<std::unique_ptr<Refiner>> writers;
@@ -163,7 +163,7 @@ TEST(Nichols, RefinesAHalfPlanesShadowAsBruteForceDoes) {
       }
       current = next;
     }
-    const Refined refined = refine(stage, 2);
+    const NicholsRefined refined = refine(stage, 2);
     int pixels = 0;
     for (int y = 0; y < g.height; ++y) {
       for (int x = 0; x < g.width; ++x) {
@@ -181,7 +181,7 @@ TEST(Nichols, RefinesAHalfPlanesShadowAsBruteForceDoes) {
 
 TEST(Nichols, FragmentsTileTheSurfacesOnceAndOnlyThose) {
   Stage stage(box_on_floor(), {200, 150});
-  const Refined refined = refine(stage, 2);
+  const NicholsRefined refined = refine(stage, 2);
   const std::vector<Fragment> fragments = fragments_of(stage, refined.signal);
   ASSERT_FALSE(fragments.empty());
   EXPECT_EQ(refined.counts.fragments, fragments.size());
@@ -190,9 +190,9 @@ TEST(Nichols, FragmentsTileTheSurfacesOnceAndOnlyThose) {
 TEST(Nichols, IsTheSameForAnyNumberOfThreads) {
   Stage stage(box_on_floor(), {300, 150});
   for (const int channels : {1, 3}) {
-    const Refined one = refine(stage, 1, channels);
+    const NicholsRefined one = refine(stage, 1, channels);
     for (const int threads : {2, 4}) {
-      const Refined many = refine(stage, threads, channels);
+      const NicholsRefined many = refine(stage, threads, channels);
       EXPECT_EQ(one.counts.test_rays, many.counts.test_rays);
       EXPECT_TRUE(std::ranges::equal(one.signal.level, many.signal.level));
       EXPECT_TRUE(std::ranges::equal(one.signal.flags, many.signal.flags));

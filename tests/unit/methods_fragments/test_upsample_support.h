@@ -8,6 +8,7 @@
 
 #include "base/math/vec3_batch.h"
 #include "methods/fragments/upsample.h"
+#include "support/every_target.h"
 
 namespace sightline::test {
 
@@ -107,26 +108,6 @@ inline Upsampled upsample_all(const GBuffer& g, const LightSignal& signal, const
         }
   }
   return result;
-}
-
-/// Pins Highway to one target for its life.
-class PinnedTarget {
- public:
-  explicit PinnedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~PinnedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-/// Those of this machine.
-inline std::vector<std::int64_t> simd_targets() {
-  std::vector<std::int64_t> targets;
-  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}})
-    if (hwy::SupportedTargets() & target) targets.push_back(target);
-  return targets;
 }
 
 }  // namespace sightline::test

@@ -15,6 +15,7 @@
 #include "methods/square_lights/components.h"
 #include "methods/square_lights/compressed_tables.h"
 #include "methods/square_lights/table_lanes.h"
+#include "support/every_target.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -213,13 +214,12 @@ TEST(ExpandTable, IsTheRoundedSumOnEveryTarget) {
     for (std::size_t j = 0; j < 4; ++j) expected[i] += weights[j] * float_from_half(components[(j + 1) * kTableCells + i]);
     expected[i] = std::clamp(expected[i], -127.f, 127.f);
   }
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+  for (const std::int64_t target : test::simd_targets()) {
+    const test::PinnedTarget pinned(target);
     std::vector<std::int8_t> table(kTableCells);
     expand_table(components.data(), weights, 4, table.data());
     for (std::size_t i = 0; i < kTableCells; ++i) EXPECT_NEAR(table[i], expected[i], 0.501f) << hwy::TargetName(target);
   }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(Binary16, RoundsToTheNearestBothWays) {

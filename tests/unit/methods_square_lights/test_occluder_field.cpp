@@ -13,6 +13,7 @@
 #include "methods/square_lights/occluder_field.h"
 #include "scene/scene.h"
 #include "shade/cube_map.h"
+#include "support/every_target.h"
 #include "texture/texture_set.h"
 
 namespace sightline::square_lights {
@@ -308,13 +309,12 @@ TEST(OccluderDistances, EqualTheScalarDefinitionOnEveryTarget) {
       if (k == 1) c = -samples.frame.normal;
       x[k] = c.x, y[k] = c.y, z[k] = c.z, r[k] = k >= 40 ? 0 : random.between(0, 1);
     }
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
+    for (const std::int64_t target : test::simd_targets()) {
+      const test::PinnedTarget pinned(target);
       occluder_distances(field, samples, {x, y, z, r}, distances);
       for (std::size_t k = 0; k < x.size(); ++k)
         ASSERT_EQ(distances[k], field.distance(samples, {x[k], y[k], z[k]}, r[k])) << hwy::TargetName(target) << " " << k;
     }
-    hwy::SetSupportedTargetsForTest(0);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace sightline::square_lights {
 namespace {
 
-Vec3 random_direction(std::mt19937& random) {
+Vec3 direction_from(std::mt19937& random) {
   std::normal_distribution<float> normal;
   return glm::normalize(Vec3(normal(random), normal(random), normal(random)));
 }
@@ -21,7 +21,7 @@ LightSet random_lights(std::size_t count, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0, 1);
   LightSet lights;
   for (std::size_t i = 0; i < count; ++i)
-    lights.add({random_direction(random), 0.02f + 0.5f * uniform(random), Color(uniform(random), uniform(random), uniform(random))});
+    lights.add({direction_from(random), 0.02f + 0.5f * uniform(random), Color(uniform(random), uniform(random), uniform(random))});
   lights.finish();
   return lights;
 }
@@ -45,7 +45,7 @@ TEST(ShadeLanes, DistancesAreThoseOfTheScalarDefinition) {
   ReceiverTables tables;
   tables.count = 2;
   tables.table[0] = a.data(), tables.table[1] = b.data();
-  tables.frame[0] = frame_from_normal(random_direction(random)), tables.frame[1] = frame_from_normal(random_direction(random));
+  tables.frame[0] = frame_from_normal(direction_from(random)), tables.frame[1] = frame_from_normal(direction_from(random));
   tables.weight[0] = 0.3f, tables.weight[1] = 0.7f;
   const std::size_t n = lights.x.size();
   AlignedVector<float> distance(n), gx(n), gy(n);
@@ -105,8 +105,8 @@ TEST(ShadeLanes, RadianceIsTheSumOfMeansOverSquares) {
     std::vector<float> visible(lights.x.size());
     std::uniform_real_distribution<float> uniform(0, 1);
     for (float& v : visible) v = uniform(random) < 0.3f ? 0.f : uniform(random);
-    const Frame3 frame = frame_from_normal(random_direction(random));
-    Vec3 wo = random_direction(random);
+    const Frame3 frame = frame_from_normal(direction_from(random));
+    Vec3 wo = direction_from(random);
     wo.z = std::fabs(wo.z);
     const BrdfTable::Slices slices = table.slices(wo);
     Color expected(0);
@@ -128,7 +128,7 @@ TEST(ShadeLanes, RadianceIsTheSumOfMeansOverSquares) {
 TEST(ShadeLanes, TurningLightsTurnsTheirCentresAlone) {
   std::mt19937 random(5);
   const LightSet lights = random_lights(33, random);
-  const Frame3 frame = frame_from_normal(random_direction(random));
+  const Frame3 frame = frame_from_normal(direction_from(random));
   // Scale does not matter: a frame's directions.
   const Mat3 rotation = 2.5f * Mat3(frame.tangent, frame.bitangent, frame.normal);
   LightSet turned;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-std::shared_ptr<const World> build(const Scene& scene) { return World::build(scene, {}, Context()); }
+std::shared_ptr<const World> world_of(const Scene& scene) { return World::build(scene, {}, Context()); }
 
 AovSet first_hit_layers() { return parse_aovs("albedo,normal,position,depth,surface,alpha"); }
 
@@ -58,7 +58,7 @@ TEST(EyePaths, PathsStandBlockByBlockAndSamplesInTheirOrder) {
   place(scene, square({0, 0, -5}, {0, 0, 1}, 50));
   place(scene, square({0, 0, -2}, {0, 0, 1}, 0.5f), add_material(scene, DielectricMaterial{}));
   place(scene, square({0, 0, 5}, {0, 0, -1}, 50));
-  const auto world = build(scene);
+  const auto world = world_of(scene);
   const View view(camera_at({0.1f, 0, 0}, {0, 0, -1}, 0.9f), {40, 7}, PixelFilter());
   Frame frame(40, 7, {});
   EyePaths eye_paths(*world, view, {});
@@ -133,7 +133,7 @@ Scene pane_scene(const SurfaceModel& pane) {
 TEST(EyePaths, APaneSplitsInTwo) {
   DielectricMaterial thin;
   thin.thin = true;
-  const auto world = build(pane_scene(thin));
+  const auto world = world_of(pane_scene(thin));
   const Camera camera = camera_at(Vec3(0), {0, 0, -1}, 0.9f);
   Take how;
   const Taken taken = take(*world, camera, how);
@@ -164,7 +164,7 @@ TEST(EyePaths, APaneSplitsInTwo) {
 
 TEST(EyePaths, DepthIsLimited) {
   // Two mirrors face each other and a wall is never found.
-  const auto world = build([] {
+  const auto world = world_of([] {
     Scene scene;
     ConductorMaterial white;
     white.eta = ColorParam{0.f}, white.k = ColorParam{1e4f};
@@ -189,7 +189,7 @@ TEST(EyePaths, TheLastMirrorStillShowsLamps) {
   const MaterialId mirror = add_material(scene, ConductorMaterial{});
   place(scene, square({0, 0, -2}, {0, 0, 1}, 5), mirror);
   place(scene, square({0, 0, 4}, {0, 0, -1}, 50), add_material(scene, DiffuseMaterial{ColorParam{0.f}}, Color(3)));
-  const Shot shot{build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.4f), {8, 8}};
+  const Shot shot{world_of(scene), camera_at(Vec3(0), {0, 0, -1}, 0.4f), {8, 8}};
   for (const int depth : {-1, 0, 1}) {
     Take how;
     how.size_px = shot.size_px, how.options.max_depth = depth;
@@ -208,7 +208,7 @@ TEST(EyePaths, TheLastMirrorStillShowsLamps) {
 }
 
 TEST(EyePaths, CoatsGiveASampleAndAMirror) {
-  const auto world = build(pane_scene(CoatedDiffuseMaterial{}));
+  const auto world = world_of(pane_scene(CoatedDiffuseMaterial{}));
   const Taken taken = take(*world, camera_at(Vec3(0), {0, 0, -1}, 0.9f), {});
   ASSERT_EQ(taken.seen.size(), 2u * 64 * 64);
   for (std::size_t k = 0; k < taken.seen.size(); k += 2) {
@@ -230,7 +230,7 @@ TEST(EyePaths, InterfacesAreNotSeenButAbsorb) {
   const MaterialId boundary = add_material(scene, InterfaceMaterial{});
   scene.materials.back().interior = MediumId(0);
   place(scene, box_mesh({-9, -9, -3}, {9, 9, -1}), boundary);
-  const Taken taken = take(*build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.9f), {});
+  const Taken taken = take(*world_of(scene), camera_at(Vec3(0), {0, 0, -1}, 0.9f), {});
   ASSERT_EQ(taken.seen.size(), 64u * 64);
   for (const Seen& seen : taken.seen) {
     EXPECT_NEAR(seen.eye.position.z, -5, 1e-4f);
@@ -250,7 +250,7 @@ TEST(EyePaths, MirrorsThatTurnRaysBelowTheirSurfaceShowNothing) {
     Mesh mirror = square({0, 0, -2}, {0, 0, 1}, 5);
     mirror.normals = std::vector<Vec3>(4, Vec3{std::sin(tilt), 0, std::cos(tilt)});
     place(scene, mirror, add_material(scene, ConductorMaterial{}));
-    const Taken taken = take(*build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.05f), {});
+    const Taken taken = take(*world_of(scene), camera_at(Vec3(0), {0, 0, -1}, 0.05f), {});
     // 2 * 1 rad is more than a right angle.
     EXPECT_EQ(taken.seen.size(), tilt > 0.8f ? 0u : 64u * 64);
     for (const Seen& seen : taken.seen) EXPECT_NEAR(seen.eye.position.z, 9, 1e-4f);
@@ -263,7 +263,7 @@ TEST(EyePaths, WhatRefractionDoesToRadianceIsNoLoss) {
   place(scene, box_mesh({-9, -9, -9}, {9, 9, -1}), add_material(scene, DielectricMaterial{}));
   Take how;
   how.options.least_weight = 0.5f;
-  const Taken taken = take(*build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.1f), how);
+  const Taken taken = take(*world_of(scene), camera_at(Vec3(0), {0, 0, -1}, 0.1f), how);
   ASSERT_EQ(taken.seen.size(), 64u * 64);
   for (const Seen& seen : taken.seen) EXPECT_NEAR(seen.eye.weight.x, 0.96f / 2.25f, 1e-3f);
 }
@@ -284,7 +284,7 @@ TEST(EyePaths, EmissionThroughGlassIsTheReferences) {
   Environment sky;
   sky.scale = {0.2f, 0.4f, 0.8f};
   scene.environment = sky;
-  Shot shot{build(scene), camera_at(Vec3(0), {0, 0, -1}, 0.7f), {32, 32}};
+  Shot shot{world_of(scene), camera_at(Vec3(0), {0, 0, -1}, 0.7f), {32, 32}};
   Exposure exposure;
   exposure.spp = 256, exposure.filter = PixelFilter::Kind::centre, exposure.max_bounces = 8;
   const Picture reference = expose(shot, exposure);

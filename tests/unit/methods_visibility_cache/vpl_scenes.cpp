@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "base/sample/warp.h"
 #include "methods/visibility_cache/surface_point.h"
@@ -12,8 +13,6 @@ namespace sightline::test {
 namespace {
 
 using builtin::MeshBuilder;
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

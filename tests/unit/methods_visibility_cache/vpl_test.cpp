@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/math/vec3_batch.h"
 #include "base/sample/sobol.h"
 #include "methods/visibility_cache/virtual_point_lights.h"
 #include "methods/visibility_cache/vpl_density.h"
@@ -13,8 +14,6 @@
 
 namespace sightline::test {
 namespace {
-
-Vec3 load(const Vec3Batch& batch, std::size_t i) { return {batch.x[i], batch.y[i], batch.z[i]}; }
 
 VirtualPointLights lights_of(const Room& room, const VirtualPointLightOptions& options, int threads = 1) {
   const View view(room.camera, {64, 48}, PixelFilter());

@@ -36,7 +36,7 @@ GltfFile skinned_triangle(bool bytes = false) {
   return file;
 }
 
-void expect_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
+void expect_vertex(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
   EXPECT_NEAR(a.z, b.z, tolerance);
@@ -52,16 +52,16 @@ TEST(GltfSkins, JointsCarryVerticesAndTheNodeDoesNot) {
     ASSERT_TRUE(scene.meshes.at(0).is_deformable());
     EXPECT_EQ(scene.skins.at(0).name, "arm");
     const Scene rest = pose(scene, 0), bent = pose(scene, 2);
-    expect_near(rest.meshes[0].positions[1], {1, 0, 0});
+    expect_vertex(rest.meshes[0].positions[1], {1, 0, 0});
     // Vertex 1 is at the joint that turns; vertex 2, at rest in (0, 1, 0) = joint 1 + (-1, 1, 0), goes with half its weight to
     // (1, 0, 0) + (-1, -1, 0), so that the mean with its place at rest is the origin.
-    expect_near(bent.meshes[0].positions[0], {0, 0, 0});
-    expect_near(bent.meshes[0].positions[1], {1, 0, 0});
-    expect_near(bent.meshes[0].positions[2], {0, 0, 0});
-    expect_near(bent.meshes[0].normals[2], {0, 0, 1});
-    expect_near(bent.meshes[0].bounds.upper, {1, 0, 0});
+    expect_vertex(bent.meshes[0].positions[0], {0, 0, 0});
+    expect_vertex(bent.meshes[0].positions[1], {1, 0, 0});
+    expect_vertex(bent.meshes[0].positions[2], {0, 0, 0});
+    expect_vertex(bent.meshes[0].normals[2], {0, 0, 1});
+    expect_vertex(bent.meshes[0].bounds.upper, {1, 0, 0});
     // Posing a posed scene again is posing the first one.
-    expect_near(pose(bent, 0).meshes[0].positions[2], {0, 1, 0});
+    expect_vertex(pose(bent, 0).meshes[0].positions[2], {0, 1, 0});
   }
 }
 
@@ -70,8 +70,8 @@ TEST(GltfSkins, WeightsAreMadeToAddUpAndEmptyOnesHangOnTheFirstJoint) {
   const int weights = file.add_array<float>({2, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}, kFloat, 3, "VEC4");
   file.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = weights;
   const Scene bent = pose(file.load(), 2);
-  expect_near(bent.meshes[0].positions[1], {1, 0, 0});
-  expect_near(bent.meshes[0].positions[2], {0, 1, 0});
+  expect_vertex(bent.meshes[0].positions[1], {1, 0, 0});
+  expect_vertex(bent.meshes[0].positions[2], {0, 1, 0});
 }
 
 TEST(GltfSkins, ASecondSetOfJointsCounts) {
@@ -82,7 +82,7 @@ TEST(GltfSkins, ASecondSetOfJointsCounts) {
   attributes["WEIGHTS_1"] = file.add_array<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.5f, 0}, kFloat, 3, "VEC4");
   const Scene scene = file.load();
   EXPECT_EQ(scene.meshes.at(0).deformation->influences, 8u);
-  expect_near(pose(scene, 2).meshes[0].positions[2], {0, 0, 0});
+  expect_vertex(pose(scene, 2).meshes[0].positions[2], {0, 0, 0});
 }
 
 TEST(GltfSkins, NormalsAndTangentsFollowSquashedJoints) {
@@ -103,8 +103,8 @@ TEST(GltfSkins, NormalsAndTangentsFollowSquashedJoints) {
     squash[0].x = x;
     deform(mesh, {}, std::vector<Mat4>{squash});
     const Vec3 winding = glm::cross(mesh.positions[1] - mesh.positions[0], mesh.positions[2] - mesh.positions[0]);
-    expect_near(mesh.normals[0], glm::normalize(winding));
-    expect_near(Vec3(mesh.tangents[0]), glm::normalize(Vec3(-x, 1, 0)));
+    expect_vertex(mesh.normals[0], glm::normalize(winding));
+    expect_vertex(Vec3(mesh.tangents[0]), glm::normalize(Vec3(-x, 1, 0)));
     EXPECT_EQ(mesh.tangents[0].w, -1);
   }
 }
@@ -114,7 +114,7 @@ TEST(GltfSkins, MergedScenesKeepTheirJoints) {
   merge_into(scene, skinned_triangle().load());
   const Scene bent = pose(scene, 2);
   ASSERT_EQ(bent.meshes.size(), 2u);
-  expect_near(bent.meshes[1].positions[2], {0, 0, 0});
+  expect_vertex(bent.meshes[1].positions[2], {0, 0, 0});
   scene.nodes[2].rotation_track = {};
   EXPECT_GT(glm::length(pose(scene, 2).meshes[0].positions[2] - bent.meshes[1].positions[2]), 0.5f);
   EXPECT_NE(scene_hash(scene), scene_hash(bent));
@@ -126,7 +126,7 @@ TEST(GltfSkins, WhatNeverMovesIsNoLongerDeformable) {
   file.json["nodes"][2]["rotation"] = {0, 0, kHalf, kHalf};
   const Scene scene = file.load();
   EXPECT_FALSE(scene.meshes.at(0).is_deformable());
-  expect_near(scene.meshes[0].positions[2], {0, 0, 0});
+  expect_vertex(scene.meshes[0].positions[2], {0, 0, 0});
 }
 
 TEST(GltfSkins, TwoNodesBendApart) {
@@ -139,9 +139,9 @@ TEST(GltfSkins, TwoNodesBendApart) {
   const auto vertex = [&](std::size_t i) {
     return transform_point(bent.instances[i].world_from_object, bent.meshes[bent.instances[i].mesh.index].positions[2]);
   };
-  expect_near(vertex(0), {0, 0, 0});
-  expect_near(vertex(1), {0, 1, 0});
-  expect_near(vertex(2), {0, 1, 3});  // without a skin: as it is, where the node is
+  expect_vertex(vertex(0), {0, 0, 0});
+  expect_vertex(vertex(1), {0, 1, 0});
+  expect_vertex(vertex(2), {0, 1, 3});  // without a skin: as it is, where the node is
 }
 
 TEST(GltfSkins, MistakesAreErrorsAtTheirPlace) {
@@ -208,12 +208,12 @@ TEST(GltfMorphs, DefaultWeightsBendMeshesForGood) {
   const Scene scene = file.load();
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_FALSE(scene.meshes.at(0).is_deformable());
-  expect_near(scene.meshes[0].positions[2], {0, 1.25f, 1});
-  expect_near(scene.meshes[0].normals[2], glm::normalize(Vec3(0.25f, 0, 1)));
+  expect_vertex(scene.meshes[0].positions[2], {0, 1.25f, 1});
+  expect_vertex(scene.meshes[0].normals[2], glm::normalize(Vec3(0.25f, 0, 1)));
   EXPECT_EQ(scene.instances.at(0).world_from_object[3].x, 10);
   // A node's own weights win.
   file.json["nodes"][0]["weights"] = {1, 0};
-  expect_near(file.load().meshes[0].positions[2], {0, 2, 0});
+  expect_vertex(file.load().meshes[0].positions[2], {0, 2, 0});
 }
 
 TEST(GltfMorphs, WeightsFollowTheirTrack) {
@@ -221,17 +221,17 @@ TEST(GltfMorphs, WeightsFollowTheirTrack) {
   const Scene linear = morphing_triangle("LINEAR", {0, 0, 1, 0.5f}).load();
   EXPECT_TRUE(linear.meshes.at(0).is_deformable());
   EXPECT_EQ(linear.animation_duration_s, 2);
-  expect_near(vertex(linear, 0), {0, 1, 0});
-  expect_near(vertex(linear, 1), {0, 1.5f, 0.5f});
-  expect_near(vertex(linear, 9), {0, 2, 1});
+  expect_vertex(vertex(linear, 0), {0, 1, 0});
+  expect_vertex(vertex(linear, 1), {0, 1.5f, 0.5f});
+  expect_vertex(vertex(linear, 9), {0, 2, 1});
   const Scene step = morphing_triangle("STEP", {0, 0, 1, 0.5f}).load();
-  expect_near(vertex(step, 1.9f), {0, 1, 0});
+  expect_vertex(vertex(step, 1.9f), {0, 1, 0});
   // Key 0: in-tangents, values, out-tangents of both targets; then key 1. With zero tangents 3t² - 2t³ of the way; an out-tangent m adds
   // 2 s * (t³ - 2t² + t) m.
   const Scene cubic = morphing_triangle("CUBICSPLINE", {0, 0, 0, 0, 0, 1, 0, 0, 1, 0.5f, 0, 0}).load();
   const float t = 0.25f, smooth = 3 * t * t - 2 * t * t * t, kick = 2 * (t * t * t - 2 * t * t + t);
-  expect_near(vertex(cubic, 0.5f), {0, 1 + smooth, 2 * (0.5f * smooth + kick)});
-  expect_near(vertex(cubic, 2), {0, 2, 1});
+  expect_vertex(vertex(cubic, 0.5f), {0, 1 + smooth, 2 * (0.5f * smooth + kick)});
+  expect_vertex(vertex(cubic, 2), {0, 2, 1});
 }
 
 TEST(GltfMorphs, MistakesAreErrorsAtTheirPlace) {
@@ -255,7 +255,7 @@ TEST(GltfMorphs, MorphsComeBeforeJoints) {
   file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", push}}};
   file.json["meshes"][0]["weights"] = {1};
   // Vertex 1 is pushed to joint 1 + (1, 0, 0), which the joint then turns up.
-  expect_near(pose(file.load(), 2).meshes.at(0).positions[1], {1, 1, 0});
+  expect_vertex(pose(file.load(), 2).meshes.at(0).positions[1], {1, 1, 0});
 }
 
 }  // namespace

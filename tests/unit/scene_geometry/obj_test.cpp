@@ -9,7 +9,7 @@
 namespace sightline {
 namespace {
 
-Scene parse(const std::string& text) { return parse_obj(text, "test.obj", Context{}); }
+Scene obj_scene(const std::string& text) { return parse_obj(text, "test.obj", Context{}); }
 
 double area(const Mesh& mesh) {
   double sum = 0;
@@ -20,7 +20,7 @@ double area(const Mesh& mesh) {
 }
 
 TEST(Obj, NegativeIndicesCountBack) {
-  const Scene a = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), b = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
+  const Scene a = obj_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), b = obj_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
   EXPECT_EQ(a.meshes[0].triangles[0], b.meshes[0].triangles[0]);
 }
 
@@ -33,13 +33,13 @@ TEST(Obj, ConcavePolygonKeepsItsArea) {
       const auto& c = corners[(first + i) % 6];
       text += "v " + std::to_string(c[0]) + " 5 " + std::to_string(c[1]) + "\n";
     }
-    EXPECT_NEAR(area(parse(text + "f 1 2 3 4 5 6\n").meshes[0]), 3, 1e-5) << first;
+    EXPECT_NEAR(area(obj_scene(text + "f 1 2 3 4 5 6\n").meshes[0]), 3, 1e-5) << first;
   }
 }
 
 TEST(Obj, BadIndexNamesItsLine) {
   try {
-    parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+    obj_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("test.obj:4"), std::string::npos);
@@ -50,7 +50,7 @@ TEST(Obj, TruncationNeverCrashes) {
   const std::string whole = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nvn 0 0 1\nusemtl x\nf 1/1/1 2//1 \\\n3\n";
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     try {
-      parse(whole.substr(0, size));
+      obj_scene(whole.substr(0, size));
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input);
     }

@@ -12,7 +12,7 @@
 namespace sightline {
 namespace {
 
-Scene parse(const std::string& text) {
+Scene ply_scene(const std::string& text) {
   const Context context;
   return parse_ply(std::as_bytes(std::span(text.data(), text.size())), "test.ply", context);
 }
@@ -58,14 +58,14 @@ std::string binary(bool big) {
 }
 
 TEST(Ply, EncodingsOfOneMeshReadTheSame) {
-  const Mesh expected = parse(ascii()).meshes.at(0);
+  const Mesh expected = ply_scene(ascii()).meshes.at(0);
   ASSERT_EQ(expected.positions.size(), 5u);
   ASSERT_EQ(expected.triangles.size(), 4u);  // a fan of three, and one
   EXPECT_EQ(expected.triangles[1], UVec3(0, 2, 3));
   EXPECT_EQ(expected.positions[3], Vec3(1, 2, 0.5f));
   EXPECT_EQ(expected.uvs[0], Vec2(0.25f, 0.25f));  // v counts from the top
   for (const bool big : {false, true}) {
-    const Mesh mesh = parse(binary(big)).meshes.at(0);
+    const Mesh mesh = ply_scene(binary(big)).meshes.at(0);
     EXPECT_TRUE(std::equal(mesh.positions.begin(), mesh.positions.end(), expected.positions.begin(), expected.positions.end()));
     EXPECT_TRUE(std::equal(mesh.triangles.begin(), mesh.triangles.end(), expected.triangles.begin(), expected.triangles.end()));
     EXPECT_TRUE(std::equal(mesh.uvs.begin(), mesh.uvs.end(), expected.uvs.begin(), expected.uvs.end()));
@@ -76,7 +76,7 @@ TEST(Ply, TruncationAnywhereIsAnErrorThatNamesTheFile) {
   for (const std::string& whole : {ascii(), binary(false), binary(true)}) {
     for (std::size_t size = 0; size + 2 < whole.size(); ++size) {
       try {
-        parse(whole.substr(0, size));
+        ply_scene(whole.substr(0, size));
         ADD_FAILURE() << "accepted " << size << " of " << whole.size() << " bytes";
       } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::input);
@@ -87,13 +87,14 @@ TEST(Ply, TruncationAnywhereIsAnErrorThatNamesTheFile) {
 }
 
 TEST(Ply, CountsBeyondTheFileAreRefused) {
-  EXPECT_THROW(parse("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float "
-                     "z\nend_header\n"),
-               Error);
+  EXPECT_THROW(
+      ply_scene("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float "
+                "z\nend_header\n"),
+      Error);
 }
 
 TEST(Ply, NonFiniteVerticesLoseTheirTriangles) {
-  const Scene scene = parse(
+  const Scene scene = ply_scene(
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 3\nproperty list uchar "
       "int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\nnan 0 0\n3 0 1 2\n3 0 1 3\n3 1 1 2\n");
   EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);

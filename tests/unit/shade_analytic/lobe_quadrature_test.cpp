@@ -12,6 +12,7 @@
 #include "base/math/frame.h"
 #include "base/math/vec3_batch.h"
 #include "shade/analytic/gauss_rules.h"
+#include "support/every_target.h"
 
 namespace sightline {
 namespace {
@@ -62,17 +63,6 @@ double summed(const FlatSurface& s, const Case& c, int steps) {
   return sum * area / (static_cast<double>(steps) * steps);
 }
 
-template <class Check>
-void on_every_target(const Check& check) {
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 FlatSurface surface_of(std::uint32_t flags, const Vec3& origin, const Vec3& e1, const Vec3& e2) {
   FlatSurface s;
   s.origin = origin, s.e1 = e1, s.e2 = e2, s.normal = glm::normalize(glm::cross(e1, e2)), s.flags = flags;
@@ -114,7 +104,7 @@ TEST(LobeQuadrature, IsTheSumOverTheEmitter) {
     Receivers r(cases);
     std::vector<double> truth;
     for (const Case& c : cases) truth.push_back(summed(light, c, c.form.ggx.alpha().x < 0.03f ? 600 : 200));
-    on_every_target([&] {
+    test::on_every_target([&] {
       ggx_over_surface(light, {r.position, r.normal, r.geometric_normal, r.wo, r.lobes, r.alpha}, cases.size(), r.integral);
       for (std::size_t i = 0; i < cases.size(); ++i) {
         const double bound = flags != FlatEmitter::kDisk ? 0.005 : r.alpha[i] < 0.03f ? 0.05 : 0.01;
@@ -140,7 +130,7 @@ TEST(LobeQuadrature, HorizonsCutTheEmitter) {
   Receivers r(cases);
   std::vector<double> truth;
   for (const Case& c : cases) truth.push_back(summed(wall, c, 200));
-  on_every_target([&] {
+  test::on_every_target([&] {
     ggx_over_surface(wall, {r.position, r.normal, r.geometric_normal, r.wo, r.lobes, r.alpha}, cases.size(), r.integral);
     for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_NEAR(r.integral.x[i], truth[i], 0.03 * truth[i] + 1e-4) << i;
   });
@@ -155,7 +145,7 @@ TEST(LobeQuadrature, HardPlacesGiveNumbersInRange) {
         for (const float z : {-1e6f, 0.f, 0.999f, 0.999999f, 1.f, 1.5f})
           cases.push_back({{x, 0.5f, z}, {0, 0, 1}, {0, 0, 1}, wo, *analytic_form(Bsdf(MetallicRoughness(Color(1), 1, roughness)))});
   Receivers r(cases);
-  on_every_target([&] {
+  test::on_every_target([&] {
     ggx_over_surface(light, {r.position, r.normal, r.geometric_normal, r.wo, r.lobes, r.alpha}, cases.size(), r.integral);
     for (std::size_t i = 0; i < cases.size(); ++i)
       ASSERT_TRUE(r.integral.x[i] >= 0 && r.integral.x[i] <= 1) << i << " " << r.integral.x[i] << " " << cases[i].position.z;

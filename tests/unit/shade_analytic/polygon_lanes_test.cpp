@@ -6,6 +6,7 @@
 #include <random>
 
 #include "shade/analytic/polygon.h"
+#include "support/every_target.h"
 
 namespace sightline {
 namespace {
@@ -47,17 +48,6 @@ struct Points {
   Vec3 n(std::size_t i) const { return {normal.x[i], normal.y[i], normal.z[i]}; }
 };
 
-template <class Check>
-void on_every_target(const Check& check) {
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(PolygonIrradianceLanes, AgreeWithTheDefinitionNearAndFar) {
   Random random(7);
   for (int kind = 0; kind < 4; ++kind) {
@@ -71,7 +61,7 @@ TEST(PolygonIrradianceLanes, AgreeWithTheDefinitionNearAndFar) {
           const Vec3 position = polygon[0] + distance * random.uniform(0.5f, 2) * towards;
           points.add(position, points.count % 2 ? random.direction() : normalize_or(random.direction() - towards, towards));
         }
-        on_every_target([&] {
+        test::on_every_target([&] {
           std::vector<float> found(padded(points.count));
           polygon_irradiance(polygon, points.position, points.normal, points.count, found.data(), sides);
           for (std::size_t i = 0; i < points.count; ++i) {
@@ -100,7 +90,7 @@ TEST(PolygonIrradianceLanes, HardPlacesGiveNumbersInRange) {
             n[axis] = sign;
             points.add({x, y, z}, n);
           }
-  on_every_target([&] {
+  test::on_every_target([&] {
     for (const EmitterSides sides : {EmitterSides::one, EmitterSides::two}) {
       std::vector<float> found(padded(points.count));
       polygon_irradiance(polygon, points.position, points.normal, points.count, found.data(), sides);

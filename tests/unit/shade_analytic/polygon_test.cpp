@@ -9,7 +9,7 @@
 namespace sightline {
 namespace {
 
-const Vec3 kUp{0, 0, 1};
+const Vec3 kStraightUp{0, 0, 1};
 
 /// From a point to a parallel a x b rectangle at distance c, one corner straight above the point.
 double corner_form_factor(double a, double b, double c) {
@@ -39,7 +39,7 @@ double summed(const Vec3d& corner, const Vec3d& e1, const Vec3d& e2, const Vec3d
 TEST(PolygonIrradiance, ParallelRectangleOverItsCornerIsTheClosedForm) {
   for (const float a : {0.01f, 0.5f, 3.f, 200.f})
     for (const float b : {0.1f, 1.f, 50.f})
-      EXPECT_NEAR(polygon_irradiance(ceiling(0, a, 0, b, 1.5f), Vec3(0), kUp), corner_form_factor(a, b, 1.5), 1e-7);
+      EXPECT_NEAR(polygon_irradiance(ceiling(0, a, 0, b, 1.5f), Vec3(0), kStraightUp), corner_form_factor(a, b, 1.5), 1e-7);
 }
 
 TEST(PolygonIrradiance, PerpendicularRectangleIsTheClosedForm) {
@@ -48,18 +48,18 @@ TEST(PolygonIrradiance, PerpendicularRectangleIsTheClosedForm) {
     for (const float b : {0.3f, 2.f}) {
       const double c = 0.75, x = a / b, y = c / b, r = std::sqrt(x * x + y * y);
       const double truth = (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * std::numbers::pi);
-      EXPECT_NEAR(polygon_irradiance(wall(0.75f, 0, b, 0, a), Vec3(0), kUp), truth, 1e-7);
+      EXPECT_NEAR(polygon_irradiance(wall(0.75f, 0, b, 0, a), Vec3(0), kStraightUp), truth, 1e-7);
     }
   }
 }
 
 TEST(PolygonIrradiance, WhatIsBelowTheHorizonCountsNothing) {
-  const double above = polygon_irradiance(wall(0.75f, -1, 2, 0, 1), Vec3(0), kUp);
-  EXPECT_NEAR(polygon_irradiance(wall(0.75f, -1, 2, -5, 1), Vec3(0), kUp), above, 1e-7);
-  EXPECT_EQ(polygon_irradiance(wall(0.75f, -1, 2, -5, -1), Vec3(0), kUp), 0);
+  const double above = polygon_irradiance(wall(0.75f, -1, 2, 0, 1), Vec3(0), kStraightUp);
+  EXPECT_NEAR(polygon_irradiance(wall(0.75f, -1, 2, -5, 1), Vec3(0), kStraightUp), above, 1e-7);
+  EXPECT_EQ(polygon_irradiance(wall(0.75f, -1, 2, -5, -1), Vec3(0), kStraightUp), 0);
   // A floor that only touches the horizon, seen from within its plane, and one below.
-  EXPECT_EQ(polygon_irradiance(ceiling(1, 2, 0, 1, 0), Vec3(0), kUp), 0);
-  EXPECT_EQ(polygon_irradiance(ceiling(-1, 2, -1, 1, -1), Vec3(0), kUp, EmitterSides::two), 0);
+  EXPECT_EQ(polygon_irradiance(ceiling(1, 2, 0, 1, 0), Vec3(0), kStraightUp), 0);
+  EXPECT_EQ(polygon_irradiance(ceiling(-1, 2, -1, 1, -1), Vec3(0), kStraightUp, EmitterSides::two), 0);
 }
 
 TEST(PolygonIrradiance, TiltedAndCutRectanglesAgreeWithSums) {
@@ -76,16 +76,16 @@ TEST(PolygonIrradiance, TiltedAndCutRectanglesAgreeWithSums) {
 TEST(PolygonIrradiance, EmissionIsOneSidedOrTwo) {
   std::vector<Vec3> polygon = ceiling(-1, 1, -1, 1, 2);
   const double truth = 4 * corner_form_factor(1, 1, 2);
-  EXPECT_NEAR(polygon_irradiance(polygon, Vec3(0), kUp), truth, 1e-7);
+  EXPECT_NEAR(polygon_irradiance(polygon, Vec3(0), kStraightUp), truth, 1e-7);
   std::reverse(polygon.begin(), polygon.end());
-  EXPECT_EQ(polygon_irradiance(polygon, Vec3(0), kUp), 0);
-  EXPECT_NEAR(polygon_irradiance(polygon, Vec3(0), kUp, EmitterSides::two), truth, 1e-7);
+  EXPECT_EQ(polygon_irradiance(polygon, Vec3(0), kStraightUp), 0);
+  EXPECT_NEAR(polygon_irradiance(polygon, Vec3(0), kStraightUp, EmitterSides::two), truth, 1e-7);
 }
 
 TEST(PolygonIrradiance, PartsAddUpToTheWhole) {
   const std::vector<Vec3> pentagon{{1, -1, -0.4f}, {1, -1.2f, 0.5f}, {1, 0.1f, 1.4f}, {1, 1.1f, 0.6f}, {1, 0.8f, -0.6f}};
   const std::vector<Vec3> left{pentagon[0], pentagon[1], pentagon[2]}, right{pentagon[0], pentagon[2], pentagon[3], pentagon[4]};
-  for (const Vec3& n : {kUp, Vec3(0.8f, 0, 0.6f), Vec3(-0.6f, 0.64f, 0.48f)}) {
+  for (const Vec3& n : {kStraightUp, Vec3(0.8f, 0, 0.6f), Vec3(-0.6f, 0.64f, 0.48f)}) {
     const double whole = polygon_irradiance(pentagon, Vec3(0.2f, 0.1f, 0), n);
     EXPECT_GT(whole, 0.001);
     EXPECT_NEAR(polygon_irradiance(left, Vec3(0.2f, 0.1f, 0), n) + polygon_irradiance(right, Vec3(0.2f, 0.1f, 0), n), whole, 1e-6);
@@ -93,12 +93,12 @@ TEST(PolygonIrradiance, PartsAddUpToTheWhole) {
 }
 
 TEST(PolygonIrradiance, SkyFilledByTheEmitterGivesOne) {
-  EXPECT_NEAR(polygon_irradiance(ceiling(-1e5f, 1e5f, -1e5f, 1e5f, 1), Vec3(0), kUp), 1, 1e-6);
+  EXPECT_NEAR(polygon_irradiance(ceiling(-1e5f, 1e5f, -1e5f, 1e5f, 1), Vec3(0), kStraightUp), 1, 1e-6);
 }
 
 TEST(PolygonIrradiance, DegeneratePolygonsAreDark) {
   const std::vector<Vec3> line{{1, 0, 0}, {1, 0, 1}, {1, 0, 2}}, point(3, Vec3(1, 0, 1)), none;
-  for (const auto& polygon : {line, point, none}) EXPECT_EQ(polygon_irradiance(polygon, Vec3(0), kUp, EmitterSides::two), 0);
+  for (const auto& polygon : {line, point, none}) EXPECT_EQ(polygon_irradiance(polygon, Vec3(0), kStraightUp, EmitterSides::two), 0);
 }
 
 TEST(DiskPolygon, ParallelDiskIsTheClosedFormToWithinItsBound) {
@@ -116,7 +116,7 @@ TEST(DiskPolygon, ParallelDiskIsTheClosedFormToWithinItsBound) {
         for (const double turn : {0.0, 0.5 / static_cast<double>(corners), 0.3 / static_cast<double>(corners)}) {
           const double phi = 2 * std::numbers::pi * turn;
           const Vec3 position(aside * std::cos(phi), aside * std::sin(phi), -height);
-          error = std::max(error, std::fabs(polygon_irradiance(disk, position, kUp) - truth(height, aside)));
+          error = std::max(error, std::fabs(polygon_irradiance(disk, position, kStraightUp) - truth(height, aside)));
         }
       }
     }
@@ -134,9 +134,9 @@ TEST(FlatLightPolygon, NormalIsTheEmittingSide) {
     FlatEmitter emitter;
     emitter.flags = flags;
     light.normal.z = -1;
-    EXPECT_GT(polygon_irradiance(flat_light_polygon(light, emitter), Vec3(0.2f, 0.3f, 0), kUp), 0.01);
+    EXPECT_GT(polygon_irradiance(flat_light_polygon(light, emitter), Vec3(0.2f, 0.3f, 0), kStraightUp), 0.01);
     light.normal.z = 1;
-    EXPECT_EQ(polygon_irradiance(flat_light_polygon(light, emitter), Vec3(0.2f, 0.3f, 0), kUp), 0);
+    EXPECT_EQ(polygon_irradiance(flat_light_polygon(light, emitter), Vec3(0.2f, 0.3f, 0), kStraightUp), 0);
   }
 }
 

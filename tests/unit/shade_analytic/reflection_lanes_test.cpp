@@ -6,15 +6,16 @@
 #include <random>
 
 #include "shade/analytic/reflection.h"
+#include "support/every_target.h"
 
 namespace sightline {
 namespace {
 
-struct Receivers {
+struct Reflectors {
   Vec3Batch position, normal, wo;
   AnalyticLobesBatch lobes;
   std::vector<AnalyticLobes> each;
-  explicit Receivers(std::size_t n) {
+  explicit Reflectors(std::size_t n) {
     for (Vec3Batch* b : {&position, &normal, &wo}) b->resize(n);
     lobes.resize(n);
   }
@@ -28,17 +29,6 @@ struct Receivers {
   }
 };
 
-template <class Check>
-void on_every_target(const Check& check) {
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(ReflectPolygonLanes, AgreeWithTheDefinition) {
   std::mt19937 engine(11);
   const auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); };
@@ -49,7 +39,7 @@ TEST(ReflectPolygonLanes, AgreeWithTheDefinition) {
       const Vec3 corner{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, e1 = direction(), e2 = direction();
       const std::vector<Vec3> polygon{corner, corner + e1, corner + e1 + e2, corner + e2};
       const Vec3 middle = corner + 0.5f * (e1 + e2);
-      Receivers receivers(kCount);
+      Reflectors receivers(kCount);
       while (receivers.each.size() < kCount) {
         const std::size_t i = receivers.each.size();
         const Vec3 p = middle + uniform(0.3f, 20) * direction(), n = direction();
@@ -61,7 +51,7 @@ TEST(ReflectPolygonLanes, AgreeWithTheDefinition) {
                                              : *analytic_form(Bsdf(MetallicRoughness(Color(0.8f, 0.6f, 0.3f), 0.5f, roughness)));
         receivers.add(p, n, wo, form);
       }
-      on_every_target([&] {
+      test::on_every_target([&] {
         Vec3Batch diffuse, specular, alone;
         for (Vec3Batch* b : {&diffuse, &specular, &alone}) b->resize(kCount);
         const ReceiverBatch batch{receivers.position, receivers.normal, receivers.wo, receivers.lobes};
@@ -69,16 +59,16 @@ TEST(ReflectPolygonLanes, AgreeWithTheDefinition) {
         ltc_specular(polygon, batch, kCount, alone, sides);
         for (std::size_t i = 0; i < kCount; ++i) {
           const PolygonReflection truth =
-              reflect_polygon(polygon, Receivers::get(receivers.position, i), Receivers::get(receivers.normal, i),
-                              Receivers::get(receivers.wo, i), receivers.each[i], sides);
-          const Color d = Receivers::get(diffuse, i), s = Receivers::get(specular, i);
+              reflect_polygon(polygon, Reflectors::get(receivers.position, i), Reflectors::get(receivers.normal, i),
+                              Reflectors::get(receivers.wo, i), receivers.each[i], sides);
+          const Color d = Reflectors::get(diffuse, i), s = Reflectors::get(specular, i);
           for (int k = 0; k < 3; ++k) {
             EXPECT_NEAR(d[k], truth.diffuse[k], 1e-5 * truth.diffuse[k] + 4e-6) << roughness << " " << i;
             EXPECT_NEAR(s[k], truth.specular[k], 1e-4 * truth.specular[k] + 1e-5) << roughness << " " << i;
             EXPECT_GE(d[k], 0);
             EXPECT_GE(s[k], 0);
           }
-          EXPECT_EQ(Receivers::get(alone, i), s);
+          EXPECT_EQ(Reflectors::get(alone, i), s);
         }
       });
     }
@@ -87,20 +77,20 @@ TEST(ReflectPolygonLanes, AgreeWithTheDefinition) {
 
 TEST(ReflectPolygonLanes, GrazingAndDegenerateViewsGiveNumbers) {
   const std::vector<Vec3> polygon{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
-  Receivers receivers(2048);
+  Reflectors receivers(2048);
   for (const float roughness : {0.035f, 0.1f, 1.f})
     for (const Vec3& wo : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0.8f, 0, -0.6f), Vec3(1e-5f, 1, 0), Vec3(0)})
       for (const float x : {-1e6f, -1.f, 0.f, 0.5f, 1.f})
         for (const float z : {-1e6f, 0.f, 0.999999f, 1.f, 1.5f})
           receivers.add({x, 0.5f, z}, {0, 0, 1}, wo, *analytic_form(Bsdf(MetallicRoughness(Color(1), 0.5f, roughness))));
-  on_every_target([&] {
+  test::on_every_target([&] {
     Vec3Batch diffuse, specular;
     diffuse.resize(2048), specular.resize(2048);
     const std::size_t count = receivers.each.size();
     reflect_polygon(polygon, {receivers.position, receivers.normal, receivers.wo, receivers.lobes}, count, diffuse, specular,
                     EmitterSides::two);
     for (std::size_t i = 0; i < count; ++i) {
-      const Color d = Receivers::get(diffuse, i), s = Receivers::get(specular, i);
+      const Color d = Reflectors::get(diffuse, i), s = Reflectors::get(specular, i);
       ASSERT_TRUE(d.x >= 0 && d.x <= 1.2f && s.x >= 0 && s.x <= 1.2f) << i << " " << d.x << " " << s.x;
     }
   });

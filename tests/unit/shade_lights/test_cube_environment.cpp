@@ -24,15 +24,15 @@ std::shared_ptr<const Image> picture(int width, int height, const std::function<
 std::shared_ptr<const Image> cube_picture(int size, const std::function<float(int, int)>& value) {
   return picture(size, kCubeFaces * size, value);
 }
-Environment environment_of(std::shared_ptr<const Image> image, EnvironmentMapping mapping) {
+Environment mapped_as(std::shared_ptr<const Image> image, EnvironmentMapping mapping) {
   Environment e;
   e.image = std::move(image);
   e.mapping = mapping;
   return e;
 }
-Environment cube_of(std::shared_ptr<const Image> image) { return environment_of(std::move(image), EnvironmentMapping::cube); }
+Environment cube_of(std::shared_ptr<const Image> image) { return mapped_as(std::move(image), EnvironmentMapping::cube); }
 
-Vec3 random_direction(test::Uniform& random) {
+Vec3 any_direction(test::Uniform& random) {
   const float z = 1 - 2 * random.next(), phi = 2 * kPi * random.next(), r = std::sqrt(1 - z * z);
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
@@ -43,7 +43,7 @@ float uneven(int x, int y) { return (x + y) % 3 == 0 ? 0.f : x == 1 && y == 9 ? 
 TEST(CubeEnvironment, DirectionsAndPlacesInThePictureAreInverses) {
   test::Uniform random(3);
   for (int i = 0; i < 20000; ++i) {
-    const Vec3 d = random_direction(random);
+    const Vec3 d = any_direction(random);
     const Vec3 back = environment_direction(EnvironmentMapping::cube, environment_uv(EnvironmentMapping::cube, d));
     EXPECT_LT(glm::length(back - d), 5e-6f) << d.x << " " << d.y << " " << d.z;
   }
@@ -136,7 +136,7 @@ TEST(CubeEnvironment, LambertUnderOneTexelMeetsTheFormulaForPolygons) {
                              cube_direction(face, 0, 0)};
     test::Uniform random(8);
     for (int k = 0; k < 8; ++k) {
-      const Vec3 normal = random_direction(random);
+      const Vec3 normal = any_direction(random);
       const double truth = 3 * std::numbers::pi * polygon_irradiance(corners, Vec3(0), normal, EmitterSides::two);
       double estimate = 0;
       constexpr int n = 128;
@@ -158,7 +158,7 @@ TEST(CubeResample, KeepsTheLightOfEveryMapping) {
                         Case{EnvironmentMapping::cube, 48, 288}}) {
     // Nearly all light from one pixel.
     const auto image = picture(c.width, c.height, [&](int x, int y) { return x == 77 % c.width && y == 40 ? 1e5f : 0.1f; });
-    Environment e = environment_of(image, c.mapping);
+    Environment e = mapped_as(image, c.mapping);
     e.scale = Color(2);
     const double truth = EnvironmentLight(e, Context{}).total_luminance();
     for (const int size : {1, 5, 32}) {
@@ -197,7 +197,7 @@ TEST(CubeResample, ACubeOfTheSizeAskedForStaysAndConstantsStayConstant) {
   EXPECT_NEAR(furnace.total_luminance(), 4 * std::numbers::pi * static_cast<double>(luminance(white.scale)), 1e-4);
   test::Uniform random(9);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 d = random_direction(random);
+    const Vec3 d = any_direction(random);
     EXPECT_NEAR(fine.radiance(d).x, coarse.radiance(d).x, 1e-5f);
     EXPECT_EQ(furnace.radiance(d), white.scale);
   }

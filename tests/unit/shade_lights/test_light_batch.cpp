@@ -9,6 +9,7 @@
 
 #include "light_test_scene.h"
 #include "support/chi_square.h"
+#include "support/every_target.h"
 
 namespace sightline {
 namespace {
@@ -24,16 +25,8 @@ void check_lanes(const LightTable& table);
 
 /// On every instruction set that this machine has.
 void check_batch(const LightTable& table, const char* name) {
-  const std::int64_t supported = hwy::SupportedTargets();
-  for (const std::int64_t target : std::array<std::int64_t, 3>{HWY_AVX3, HWY_AVX2, HWY_SSSE3}) {
-    if ((supported & target) == 0) continue;
-    SCOPED_TRACE(std::string(name) + " on " + hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    check_lanes(table);
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
-  }
+  SCOPED_TRACE(name);
+  test::on_every_target([&] { check_lanes(table); });
 }
 
 void check_lanes(const LightTable& table) {

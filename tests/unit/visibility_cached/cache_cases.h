@@ -7,34 +7,12 @@
 #include <vector>
 
 #include "base/settings/settings.h"
+#include "support/every_target.h"
 #include "unit/trace/trace_scenes.h"
 #include "visibility/cached/quantizer.h"
 #include "visibility/visibility.h"
 
 namespace sightline::test {
-
-/// Pins Highway to one target for its life.
-class PinnedTarget {
- public:
-  explicit PinnedTarget(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  PinnedTarget(const PinnedTarget&) = delete;
-  PinnedTarget& operator=(const PinnedTarget&) = delete;
-  ~PinnedTarget() {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-inline std::vector<std::int64_t> simd_targets() {
-  std::vector<std::int64_t> result;
-  for (const std::int64_t target : {std::int64_t{HWY_SSSE3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}}) {
-    if (hwy::SupportedTargets() & target) result.push_back(target);
-  }
-  return result;
-}
 
 inline Bounds cube(float half) {
   Bounds bounds;

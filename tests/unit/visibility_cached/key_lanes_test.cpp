@@ -11,7 +11,7 @@
 namespace sightline::test {
 namespace {
 
-constexpr CacheSalt kSalt{77, 99};
+constexpr CacheSalt kLaneSalt{77, 99};
 
 struct Variant {
   const char* name;
@@ -60,12 +60,12 @@ TEST(KeyLanes, KeysAndPartsEqualTheScalarOnes) {
         ASSERT_EQ(parts.part(i), eye_part(expected)) << i;
       }
       for (const float shift : {0.f, 3.8f}) {
-        light_key_lanes(q.constants(), batch.light, batch.semantic.data(), shift, {false, kSalt}, words);
-        EXPECT_EQ(light_key_lanes(q.constants(), batch.light, batch.semantic.data(), shift, {true, kSalt}, parts), 15u);
+        light_key_lanes(q.constants(), batch.light, batch.semantic.data(), shift, {false, kLaneSalt}, words);
+        EXPECT_EQ(light_key_lanes(q.constants(), batch.light, batch.semantic.data(), shift, {true, kLaneSalt}, parts), 15u);
         for (std::size_t i = 0; i < batch.light.size; ++i) {
           const EndWords expected = light_words(q, batch, i, shift);
           ASSERT_EQ(words.words(i), expected) << i << " " << int{batch.semantic[i]};
-          ASSERT_EQ(parts.part(i), light_part(expected, kSalt)) << i;
+          ASSERT_EQ(parts.part(i), light_part(expected, kLaneSalt)) << i;
         }
       }
     }
@@ -83,11 +83,11 @@ TEST(KeyLanes, ConnectionsEqualTheScalarOnes) {
     EndKeys words, eye, light;
     locate_lanes(q.constants(), batch.eye, eyes);
     locate_lanes(q.constants(), batch.light, lights);
-    light_key_lanes(q.constants(), batch.light, batch.semantic.data(), 0, {false, kSalt}, words);
+    light_key_lanes(q.constants(), batch.light, batch.semantic.data(), 0, {false, kLaneSalt}, words);
     ConnectionEnds ends{&eyes, &lights, &words, batch.semantic.data(), batch.eye_of.data(), batch.light_of.data(), {}, 0};
     for (float& offset : ends.eye_offset) offset = q.eye_offset(12);
     ends.symmetric_offset = q.symmetric_offset(12);
-    connection_key_lanes(q.constants(), ends, batch.size, {false, kSalt}, eye, light);
+    connection_key_lanes(q.constants(), ends, batch.size, {false, kLaneSalt}, eye, light);
     for (std::size_t i = 0; i < batch.size; ++i) {
       const std::uint32_t e = batch.eye_of[i], l = batch.light_of[i];
       if (l == kNoQuery) continue;
@@ -108,7 +108,7 @@ struct ScalarLookUp {
   int bits;
 
   std::uint32_t slot(const EndWords& eye, const EndWords& light, std::uint32_t& tag) const {
-    const CacheSlot s = cache_slot(hash, eye, light, kSalt, bits);
+    const CacheSlot s = cache_slot(hash, eye, light, kLaneSalt, bits);
     tag = format.tag(s.digest);
     return table[s.index];
   }
@@ -129,7 +129,7 @@ EndWords moved(EndWords w, int dx, int dy) {
 
 TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
   std::mt19937 random(3);
-  constexpr int kBits = 12;
+  constexpr int kFewBits = 12;
   const Quantizer q(cube(1), {});
   // Few cells, so that many queries meet the same ones.
   QueryBatch batch = random_batch(random, 301, 40, 5001);
@@ -149,10 +149,10 @@ TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
           locate_lanes(q.constants(), batch.eye, points);
           eye.resize(batch.eye.size, parts);
           eye_key_lanes(q.constants(), points, 0, batch.eye.size, q.eye_offset(8), parts, eye);
-          light_key_lanes(q.constants(), batch.light, batch.semantic.data(), 0, {parts, kSalt}, light);
+          light_key_lanes(q.constants(), batch.light, batch.semantic.data(), 0, {parts, kLaneSalt}, light);
 
-          std::vector<std::uint32_t> table(1 << kBits);
-          const ScalarLookUp scalar{table, hash, format, kBits};
+          std::vector<std::uint32_t> table(1 << kFewBits);
+          const ScalarLookUp scalar{table, hash, format, kFewBits};
           const auto words_of = [&](std::size_t i) {
             const std::uint32_t e = batch.eye_of[i];
             const GridPoint p = q.locate(end_position(batch.eye, e), end_normal(batch.eye, e), batch.eye.cell_area[e]);
@@ -162,7 +162,7 @@ TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
           for (std::size_t i = 0; i < batch.size; ++i) {
             if (batch.light_of[i] == kNoQuery || i % 3 == 0) continue;
             const auto [e, l] = words_of(i);
-            const CacheSlot s = cache_slot(hash, e, l, kSalt, kBits);
+            const CacheSlot s = cache_slot(hash, e, l, kLaneSalt, kFewBits);
             table[s.index] = format.after(table[s.index], format.tag(s.digest), random() % 5 != 0);
           }
 
@@ -170,8 +170,8 @@ TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
           look_up.eye = batch.eye_of.data(), look_up.light = batch.light_of.data();
           look_up.count = batch.size;
           look_up.eye_keys = &eye, look_up.light_keys = &light;
-          look_up.table = table.data(), look_up.table_bits = kBits;
-          look_up.salt = kSalt, look_up.hash = hash;
+          look_up.table = table.data(), look_up.table_bits = kFewBits;
+          look_up.salt = kLaneSalt, look_up.hash = hash;
           look_up.neighbours = refine, look_up.last_level = refine == CacheRefinement::none;
           look_up.rays_a_cell = rays_a_cell;
           AlignedVector<float> weights(padded(batch.size), -1);
@@ -196,7 +196,7 @@ TEST(LookUpLanes, AnswersAreThoseOfTheScalarAlgorithm) {
             const bool known = format.matches(slot, tag) && (!format.counters || mixed || seen + hidden >= rays_a_cell);
             if (!known) {
               rejected += slot != 0 && !format.matches(slot, tag);
-              ASSERT_EQ(result.miss_index[misses], cache_slot(hash, e, l, kSalt, kBits).index);
+              ASSERT_EQ(result.miss_index[misses], cache_slot(hash, e, l, kLaneSalt, kFewBits).index);
               ASSERT_EQ(result.miss_tag[misses], tag);
               ASSERT_EQ(result.miss_id[misses++], i);
               continue;

@@ -10,7 +10,7 @@
 namespace sightline::test {
 namespace {
 
-const double kRatio = static_cast<double>(CachedVisibilitySettings().level_ratio);
+const double kLevelRatio = static_cast<double>(CachedVisibilitySettings().level_ratio);
 
 constexpr int kSize = 128;  // pixels a side
 constexpr float kPixel = 0.01f;
@@ -130,7 +130,7 @@ TEST(ShadowEdge, ExactVisibilityFindsTheAnalyticEdge) {
 TEST(ShadowEdge, LiesWithinACellOfTheTruth) {
   const EdgeError error = over_offsets(halton_order(), {"ce=8", "refine=none"});
   // Cells are at most sqrt(C_R) wider than C_E, and one that the leaning edge crosses is wrong in a row by no more than its width.
-  EXPECT_LE(error.worst, 8 * std::sqrt(kRatio) * (1 + kSlope) + 1);
+  EXPECT_LE(error.worst, 8 * std::sqrt(kLevelRatio) * (1 + kSlope) + 1);
   EXPECT_LT(std::fabs(error.mean), 0.25);
   EXPECT_GT(error.mean_abs, 0.5);  // without refinement it does show
 }

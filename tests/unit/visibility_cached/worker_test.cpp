@@ -9,7 +9,7 @@
 namespace sightline::test {
 namespace {
 
-std::shared_ptr<const World> soup_world() {
+std::shared_ptr<const World> worker_world() {
   std::mt19937 random(1);
   Scene scene = scene_of(triangle_soup(random, 60, 0.7f, 0.3f));
   place(scene, box_mesh(Vec3(-1), Vec3(1)));
@@ -56,7 +56,7 @@ const std::vector<QuerySemantic> kSemantics = {QuerySemantic::point, QuerySemant
                                                QuerySemantic::solid_angle};
 
 TEST(CachedWorker, VanishingCellsGiveExactVisibility) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   for (const QuerySplit split : {QuerySplit::eye, QuerySplit::symmetric}) {
     for (const QuerySemantic semantic : kSemantics) {
       QueryBatch batch = floor_batch(20, semantic);
@@ -74,7 +74,7 @@ TEST(CachedWorker, VanishingCellsGiveExactVisibility) {
 }
 
 TEST(CachedWorker, OneCellIsOneRayForEachOrientationAndLight) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   for (const QuerySemantic semantic : {QuerySemantic::point, QuerySemantic::direction}) {
     QueryBatch batch = floor_batch(5, semantic);
     for (const char* refine : {"refine=none", "refine=4"}) EXPECT_EQ(Cache(world, {"ce=1000000", refine}).ask(batch).counts.traced, 5u);
@@ -99,7 +99,7 @@ TEST(CachedWorker, LitAndDarkScenesAreExact) {
 }
 
 TEST(CachedWorker, CountsAddUp) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{{},
                                                                                         {"refine=none"},
                                                                                         {"refine=64"},
@@ -127,7 +127,7 @@ TEST(CachedWorker, CountsAddUp) {
 }
 
 TEST(CachedWorker, MostAnswersAreRightAndCostFewRays) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   for (const QuerySemantic semantic : kSemantics) {
     const QueryBatch batch = floor_batch(64, semantic);
     const Answers exact = Cache(world, {}, "exact").ask(batch);
@@ -140,7 +140,7 @@ TEST(CachedWorker, MostAnswersAreRightAndCostFewRays) {
 }
 
 TEST(CachedWorker, EndsOfUnknownAreaAreTraced) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   QueryBatch batch = floor_batch(16, QuerySemantic::surface);
   const Answers exact = Cache(world, {}, "exact").ask(batch);
   for (std::size_t i = 0; i < batch.eye.size; i += 3) batch.eye.cell_area[i] = 0;
@@ -156,7 +156,7 @@ TEST(CachedWorker, EndsOfUnknownAreaAreTraced) {
 }
 
 TEST(CachedWorker, ScopesKnowNothingOfEachOther) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   const QueryBatch batch = floor_batch(32, QuerySemantic::surface), other = floor_batch(7, QuerySemantic::point);
   const Cache cache(world, {"table_bits=16"});
   const auto fresh = cache.visibility->worker(), used = cache.visibility->worker();
@@ -169,7 +169,7 @@ TEST(CachedWorker, ScopesKnowNothingOfEachOther) {
 }
 
 TEST(CachedWorker, AnswersLastUntilTheNextScope) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   const QueryBatch batch = floor_batch(32, QuerySemantic::surface);
   // Without refinement: neighbours that became known would call for finer cells the second time.
   const Cache cache(world, {"refine=none"});
@@ -181,7 +181,7 @@ TEST(CachedWorker, AnswersLastUntilTheNextScope) {
 }
 
 TEST(CachedWorker, OwnCeOfAKindOfLightCountsForItAlone) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   QueryBatch batch = floor_batch(16, QuerySemantic::point);
   for (std::size_t l = 0; l < 16; l += 2) {
     batch.semantic[l] = static_cast<std::uint8_t>(QuerySemantic::surface);
@@ -208,13 +208,13 @@ TEST(CachedWorker, OwnCeOfAKindOfLightCountsForItAlone) {
 }
 
 TEST(CachedWorker, ResidualOfProbabilityOneIsExact) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   const QueryBatch batch = floor_batch(16, QuerySemantic::surface);
   EXPECT_EQ(Cache(world, {"ce=32", "residual=1"}).ask(batch).weights, Cache(world, {}, "exact").ask(batch).weights);
 }
 
 TEST(CachedWorker, ResidualIsRightInTheMean) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   QueryBatch batch = floor_batch(16, QuerySemantic::surface);
   const Answers exact = Cache(world, {}, "exact").ask(batch);
   const Cache biased(world, {"ce=32", "refine=none"}), corrected(world, {"ce=32", "refine=none", "residual=0.2"});
@@ -238,7 +238,7 @@ TEST(CachedWorker, ResidualIsRightInTheMean) {
 }
 
 TEST(CachedWorker, LightRefinementComesAfterTheEyes) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   const QueryBatch batch = floor_batch(64, QuerySemantic::surface);
   const Answers exact = Cache(world, {}, "exact").ask(batch);
   const Answers plain = Cache(world, {"ce=4"}).ask(batch), finer = Cache(world, {"ce=4", "light_refine=2"}).ask(batch);
@@ -257,7 +257,7 @@ TEST(CachedWorker, EmptySceneIsLit) {
 }
 
 TEST(CachedWorker, EveryTargetGivesTheSameBits) {
-  const auto world = soup_world();
+  const auto world = worker_world();
   const QueryBatch batch = floor_batch(32, QuerySemantic::surface);
   const Answers best = Cache(world, {}).ask(batch);
   for (const std::int64_t target : simd_targets()) {

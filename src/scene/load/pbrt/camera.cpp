@@ -39,7 +39,7 @@ void Builder::camera(const std::string& type, const ParameterList& parameters, c
   // pbrt looks along +z with x to the right and y up, whatever the handedness of the world; Sightline along -z.
   if (determinant(camera_from_world) == 0) throw error_at(place, "the camera's transformation cannot be inverted");
   const Mat4d world_from_camera = glm::inverse(camera_from_world) * scaling({1, 1, -1});
-  if (!is_finite(world_from_camera)) throw error_at(place, "the camera's transformation cannot be inverted");
+  if (!is_finite_transform(world_from_camera)) throw error_at(place, "the camera's transformation cannot be inverted");
   camera.world_from_camera = Mat4(world_from_camera);
   camera.fov_axis = Camera::FovAxis::shorter;
 

@@ -108,7 +108,7 @@ ParameterList Reader::read_parameters(Tokenizer& tokens, const Place& place, std
 }
 
 void Reader::set_transform(const Mat4d& m, const Place& place) {
-  if (!is_finite(m)) throw error_at(place, "the transformation is not finite");
+  if (!is_finite_transform(m)) throw error_at(place, "the transformation is not finite");
   // Of moving transformations the state at the shutter's opening counts.
   if (state_.transforms_at_start) state_.world_from_object = m;
 }

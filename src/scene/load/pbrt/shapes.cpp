@@ -202,7 +202,7 @@ void Builder::sphere(ShapeEntry entry, const ParameterList& parameters) {
   sphere.radius = static_cast<float>(*scale) * radius;
   sphere.world_from_object = Mat4(entry.world_from_object);
   sphere.reverse_orientation = entry.reverse_orientation;
-  if (!sightline::is_finite(sphere.center) || !std::isfinite(sphere.radius)) throw error_at(entry.place, "a sphere is not finite");
+  if (!is_finite(sphere.center) || !std::isfinite(sphere.radius)) throw error_at(entry.place, "a sphere is not finite");
   entry.sphere = sphere;
   shapes_.push_back(std::move(entry));
 }

@@ -29,7 +29,7 @@ Mat4d matrix(std::span<const double> columns) {
   return m;
 }
 
-bool is_finite(const Mat4d& m) {
+bool is_finite_transform(const Mat4d& m) {
   for (int i = 0; i < 16; ++i) {
     if (!std::isfinite(m[i / 4][i % 4])) return false;
   }

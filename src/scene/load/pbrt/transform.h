@@ -15,7 +15,7 @@ Mat4d translation(const Vec3d& offset);
 /// Sixteen numbers column by column, as Transform lists them.
 Mat4d matrix(std::span<const double> columns);
 
-bool is_finite(const Mat4d& m);
+bool is_finite_transform(const Mat4d& m);
 /// Determinant of the linear part.
 double determinant(const Mat4d& m);
 bool is_identity(const Mat4d& m);
