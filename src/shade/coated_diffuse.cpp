@@ -6,6 +6,7 @@
 #include "base/sample/warp.h"
 #include "shade/fresnel.h"
 #include "shade/ggx_albedo.h"
+#include "shade/reflected_sample.h"
 
 namespace sightline {
 
@@ -48,35 +49,22 @@ BsdfEval CoatedDiffuse::evaluate_upper(const Vec3& wo, const Vec3& wi, float ref
 
 BsdfEval CoatedDiffuse::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
   if (!(wo.z * wi.z > 0)) return {};
-  const Vec3 upper_o{wo.x, wo.y, std::fabs(wo.z)}, upper_i{wi.x, wi.y, std::fabs(wi.z)};
-  return evaluate_upper(upper_o, upper_i, coat_reflectance(upper_o.z));
+  return evaluate_upper(upper_side(wo), upper_side(wi), coat_reflectance(std::fabs(wo.z)));
 }
 
 std::optional<BsdfSample> CoatedDiffuse::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode) const {
   if (wo.z == 0) return std::nullopt;
-  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
+  const Vec3 upper = upper_side(wo);
   const float reflected_o = coat_reflectance(upper.z);
   const float specular = specular_probability(reflected_o);
-  BsdfSample s;
+  Vec3 wi;
   if (u_lobe < specular) {
-    if (ggx_.is_smooth()) {
-      s.wi = Vec3(-wo.x, -wo.y, wo.z);
-      s.weight = Color(reflected_o / specular);
-      s.pdf = specular;
-      s.is_delta = true;
-      return s;
-    }
-    s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
+    if (ggx_.is_smooth()) return mirror_sample(wo, Color(reflected_o / specular), specular);
+    wi = reflect_about(upper, ggx_.sample_visible(upper, u));
   } else {
-    s.wi = sample_cosine_hemisphere(u);
+    wi = sample_cosine_hemisphere(u);
   }
-  if (!(s.wi.z > 0)) return std::nullopt;
-  const BsdfEval e = evaluate_upper(upper, s.wi, reflected_o);
-  if (!(e.pdf > 0)) return std::nullopt;
-  s.pdf = e.pdf;
-  s.weight = e.f_cos / e.pdf;
-  if (wo.z < 0) s.wi.z = -s.wi.z;
-  return s;
+  return reflected_sample(wo, wi, [&](const Vec3& w) { return evaluate_upper(upper, w, reflected_o); });
 }
 
 DeltaLobes CoatedDiffuse::delta_lobes(const Vec3& wo, TransportMode) const {
@@ -84,12 +72,7 @@ DeltaLobes CoatedDiffuse::delta_lobes(const Vec3& wo, TransportMode) const {
   if (!ggx_.is_smooth() || wo.z == 0) return lobes;
   const float reflected_o = coat_reflectance(std::fabs(wo.z));
   if (!(reflected_o > 0)) return lobes;
-  BsdfSample s;
-  s.wi = Vec3(-wo.x, -wo.y, wo.z);
-  s.weight = Color(reflected_o);
-  s.pdf = specular_probability(reflected_o);
-  s.is_delta = true;
-  lobes.add(s);
+  lobes.add(mirror_sample(wo, Color(reflected_o), specular_probability(reflected_o)));
   return lobes;
 }
 

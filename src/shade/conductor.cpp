@@ -1,6 +1,7 @@
 #include "shade/conductor.h"
 
 #include "shade/fresnel.h"
+#include "shade/reflected_sample.h"
 
 namespace sightline {
 
@@ -14,14 +15,7 @@ BsdfEval Conductor::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) cons
           half_distribution * ggx_.masking_over_cosine(wo)};
 }
 
-BsdfSample Conductor::mirror(const Vec3& wo) const {
-  BsdfSample s;
-  s.wi = Vec3(-wo.x, -wo.y, wo.z);
-  s.weight = tint_ * fresnel_conductor(std::fabs(wo.z), eta_, k_);
-  s.pdf = 1;
-  s.is_delta = true;
-  return s;
-}
+BsdfSample Conductor::mirror(const Vec3& wo) const { return mirror_sample(wo, tint_ * fresnel_conductor(std::fabs(wo.z), eta_, k_), 1); }
 
 DeltaLobes Conductor::delta_lobes(const Vec3& wo, TransportMode) const {
   DeltaLobes lobes;

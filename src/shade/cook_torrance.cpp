@@ -5,6 +5,7 @@
 
 #include "base/sample/warp.h"
 #include "shade/fresnel.h"
+#include "shade/reflected_sample.h"
 
 namespace sightline {
 
@@ -49,26 +50,20 @@ BsdfEval CookTorrance::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) c
 
 std::optional<BsdfSample> CookTorrance::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
   if (wo.z == 0) return std::nullopt;
-  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
+  const Vec3 upper = upper_side(wo);
   const float specular = specular_probability(upper.z);
-  BsdfSample s;
+  Vec3 wi;
   if (u_lobe < specular) {
     // One wall of a groove by Beckmann's slopes, then the wall opposite in proportion to what is seen of either [HeitzDEon2014, Alg. 2].
     const float radius = roughness_ * std::sqrt(-std::log(1 - u.x)), phi = 2 * kPi * u.y;
     Vec3 h = glm::normalize(Vec3(radius * std::cos(phi), radius * std::sin(phi), 1));
     const float seen = std::max(0.f, glm::dot(upper, h)), opposite = std::max(0.f, glm::dot(upper, Vec3(-h.x, -h.y, h.z)));
     if (u_lobe * (seen + opposite) >= specular * seen) h = Vec3(-h.x, -h.y, h.z);
-    s.wi = reflect_about(upper, h);
-    if (!(s.wi.z > 0)) return std::nullopt;
+    wi = reflect_about(upper, h);
   } else {
-    s.wi = sample_cosine_hemisphere(u);
+    wi = sample_cosine_hemisphere(u);
   }
-  const BsdfEval e = evaluate(upper, s.wi, mode);
-  if (!(e.pdf > 0)) return std::nullopt;
-  s.pdf = e.pdf;
-  s.weight = e.f_cos / e.pdf;
-  if (wo.z < 0) s.wi.z = -s.wi.z;
-  return s;
+  return reflected_sample(wo, wi, [&](const Vec3& w) { return evaluate(upper, w, mode); });
 }
 
 }  // namespace sightline

@@ -6,6 +6,7 @@
 #include "base/sample/warp.h"
 #include "shade/fresnel.h"
 #include "shade/ggx_albedo.h"
+#include "shade/reflected_sample.h"
 
 namespace sightline {
 
@@ -49,48 +50,31 @@ BsdfEval MetallicRoughness::evaluate_upper(const Vec3& wo, const Vec3& wi, const
 
 BsdfEval MetallicRoughness::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
   if (!(wo.z * wi.z > 0)) return {};
-  const Vec3 upper_o{wo.x, wo.y, std::fabs(wo.z)}, upper_i{wi.x, wi.y, std::fabs(wi.z)};
-  return evaluate_upper(upper_o, upper_i, is_black(diffuse_) ? Color(0) : specular_albedo(upper_o.z));
+  return evaluate_upper(upper_side(wo), upper_side(wi), is_black(diffuse_) ? Color(0) : specular_albedo(std::fabs(wo.z)));
 }
 
 std::optional<BsdfSample> MetallicRoughness::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode) const {
   if (wo.z == 0) return std::nullopt;
-  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
+  const Vec3 upper = upper_side(wo);
   const bool metal = is_black(diffuse_);
   // A rough metal needs no albedo: it has but one lobe.
   const Color specular_o = metal && !ggx_.is_smooth() ? Color(0) : specular_albedo(upper.z);
   const float specular = metal ? 1.f : specular_probability(specular_o);
-  BsdfSample s;
+  Vec3 wi;
   if (u_lobe < specular) {
-    if (ggx_.is_smooth()) {
-      s.wi = Vec3(-wo.x, -wo.y, wo.z);
-      s.weight = specular_o / specular;
-      s.pdf = specular;
-      s.is_delta = true;
-      return s;
-    }
-    s.wi = reflect_about(upper, ggx_.sample_visible(upper, u));
+    if (ggx_.is_smooth()) return mirror_sample(wo, specular_o / specular, specular);
+    wi = reflect_about(upper, ggx_.sample_visible(upper, u));
   } else {
-    s.wi = sample_cosine_hemisphere(u);
+    wi = sample_cosine_hemisphere(u);
   }
-  if (!(s.wi.z > 0)) return std::nullopt;
-  const BsdfEval e = evaluate_upper(upper, s.wi, specular_o);
-  if (!(e.pdf > 0)) return std::nullopt;
-  s.pdf = e.pdf;
-  s.weight = e.f_cos / e.pdf;
-  if (wo.z < 0) s.wi.z = -s.wi.z;
-  return s;
+  return reflected_sample(wo, wi, [&](const Vec3& w) { return evaluate_upper(upper, w, specular_o); });
 }
 
 DeltaLobes MetallicRoughness::delta_lobes(const Vec3& wo, TransportMode) const {
   DeltaLobes lobes;
   if (!ggx_.is_smooth() || wo.z == 0) return lobes;
-  BsdfSample s;
-  s.wi = Vec3(-wo.x, -wo.y, wo.z);
-  s.weight = specular_albedo(std::fabs(wo.z));
-  s.pdf = is_black(diffuse_) ? 1.f : specular_probability(s.weight);
-  s.is_delta = true;
-  if (!is_black(s.weight)) lobes.add(s);
+  const Color reflected = specular_albedo(std::fabs(wo.z));
+  if (!is_black(reflected)) lobes.add(mirror_sample(wo, reflected, is_black(diffuse_) ? 1.f : specular_probability(reflected)));
   return lobes;
 }
 

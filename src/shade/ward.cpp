@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/sample/warp.h"
+#include "shade/reflected_sample.h"
 
 namespace sightline {
 
@@ -38,23 +39,17 @@ BsdfEval Ward::evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const {
 
 std::optional<BsdfSample> Ward::sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode) const {
   if (wo.z == 0) return std::nullopt;
-  const Vec3 upper{wo.x, wo.y, std::fabs(wo.z)};
-  BsdfSample s;
+  const Vec3 upper = upper_side(wo);
+  Vec3 wi;
   if (u_lobe < specular_probability_) {
     // A Gaussian slope, by Box and Muller; its half vector reflects wo.
     const float radius = std::sqrt(-std::log(1 - u.x)), phi = 2 * kPi * u.y;
     const Vec3 h = glm::normalize(Vec3(alpha_.x * radius * std::cos(phi), alpha_.y * radius * std::sin(phi), 1));
-    s.wi = 2 * glm::dot(upper, h) * h - upper;
-    if (!(s.wi.z > 0)) return std::nullopt;
+    wi = 2 * glm::dot(upper, h) * h - upper;
   } else {
-    s.wi = sample_cosine_hemisphere(u);
+    wi = sample_cosine_hemisphere(u);
   }
-  const BsdfEval e = evaluate(upper, s.wi, mode);
-  if (!(e.pdf > 0)) return std::nullopt;
-  s.pdf = e.pdf;
-  s.weight = e.f_cos / e.pdf;
-  if (wo.z < 0) s.wi.z = -s.wi.z;
-  return s;
+  return reflected_sample(wo, wi, [&](const Vec3& w) { return evaluate(upper, w, mode); });
 }
 
 }  // namespace sightline
