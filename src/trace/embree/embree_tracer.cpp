@@ -33,7 +33,7 @@ class EmbreeTracer final : public Tracer {
     scenes_.static_scene = static_ ? static_->get() : nullptr;
     scenes_.top_scene = top_ ? top_->get() : nullptr;
     scenes_.masks = &masks_;
-    scenes_.coarse = statistics_.static_triangles <= kCoarseTriangles;
+    scenes_.detail = geometry_detail(statistics_.static_triangles);
     const std::vector<std::uint32_t>& table = scenes_.tables.static_instances;
     scenes_.static_is_identity = true;
     for (std::size_t i = 0; i < table.size(); ++i) scenes_.static_is_identity = scenes_.static_is_identity && table[i] == i;

@@ -9,10 +9,17 @@ namespace {
 
 // By BatchKind: primary, shadow, shadow_diffuse, bounce; the fastest of single, 8- and 16-wide calls with either flag in `sightline bench
 // trace`. Coherent packets of shadow rays pay where triangles are large beside the packet (Sponza: 1.5 times the rays), and cost up to half
-// the speed where they are fine (hairball), so those have a table for each class of geometry. Both give the same answers.
+// the speed where they are fine (hairball, where 8 rays a call are 7 % faster than 16), so those have a table for each class of geometry.
+// All give the same answers.
 constexpr std::array<CallStyle, 4> kIntersectStyles{{{16, true}, {16, false}, {16, false}, {8, false}}};
-constexpr std::array<CallStyle, 4> kOccludedStyles{{{16, false}, {16, false}, {16, false}, {16, false}}};
-constexpr std::array<CallStyle, 4> kOccludedStylesCoarse{{{16, true}, {16, true}, {16, false}, {16, false}}};
+// By GeometryDetail.
+constexpr std::array<std::array<CallStyle, 4>, 3> kOccludedStyles{{
+    {{{16, true}, {16, true}, {16, false}, {16, false}}},
+    {{{16, false}, {16, false}, {16, false}, {16, false}}},
+    {{{8, false}, {8, false}, {8, false}, {8, false}}},
+}};
+/// Scenes with at most this many triangles count as coarse and as medium.
+constexpr std::uint64_t kCoarseTriangles = std::uint64_t{1} << 18, kMediumTriangles = std::uint64_t{1} << 20;
 
 CallStyle fit(CallStyle style, int native_width) {
   while (style.width > native_width) style.width = style.width == 16 ? 8 : 1;
@@ -190,6 +197,11 @@ void occluded_singles(const EmbreeScenes& scenes, const RayBatch& rays, std::uin
 
 }  // namespace
 
+GeometryDetail geometry_detail(std::uint64_t static_triangles) {
+  if (static_triangles <= kCoarseTriangles) return GeometryDetail::coarse;
+  return static_triangles <= kMediumTriangles ? GeometryDetail::medium : GeometryDetail::fine;
+}
+
 CallStyle intersect_style(BatchKind kind, const EmbreeScenes& scenes, int native_width) {
   CallStyle style = kIntersectStyles[static_cast<std::size_t>(kind)];
   style.coherent = style.coherent && !scenes.top_scene;
@@ -197,7 +209,7 @@ CallStyle intersect_style(BatchKind kind, const EmbreeScenes& scenes, int native
 }
 
 CallStyle occluded_style(BatchKind kind, const EmbreeScenes& scenes, int native_width) {
-  CallStyle style = (scenes.coarse ? kOccludedStylesCoarse : kOccludedStyles)[static_cast<std::size_t>(kind)];
+  CallStyle style = kOccludedStyles[static_cast<std::size_t>(scenes.detail)][static_cast<std::size_t>(kind)];
   style.coherent = style.coherent && !scenes.top_scene;
   return fit(style, native_width);
 }

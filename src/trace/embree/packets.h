@@ -17,17 +17,18 @@ struct CallStyle {
   bool coherent = false;
 };
 
+/// How large triangles are beside a packet of neighbouring rays, as far as their number in the static scene tells.
+enum class GeometryDetail : std::uint8_t { coarse, medium, fine };
+GeometryDetail geometry_detail(std::uint64_t static_triangles);
+
 /// Scenes to trace one after the other, either may be null, and what their hits mean.
 struct EmbreeScenes {
   RTCScene static_scene = nullptr, top_scene = nullptr;
   GeometryTables tables;
   bool static_is_identity = false;  ///< static_instances[i] == i
-  bool coarse = false;              ///< few triangles: each is large beside a packet of neighbouring rays
+  GeometryDetail detail = GeometryDetail::medium;
   const AlphaMasks* masks = nullptr;
 };
-
-/// Scenes with at most this many triangles count as coarse.
-inline constexpr std::uint64_t kCoarseTriangles = std::uint64_t{1} << 18;
 
 /// The style for a kind of batch: fixed tables, so that equal runs make equal calls. Never coherent on a scene with instances: Embree
 /// 3.13.5 then may not return from rtcOccluded16.
