@@ -34,8 +34,8 @@ std::optional<BuiltView> load_built_view(const std::string& name, const std::fil
 Shot shoot(const BuiltView& view, const RenderRequest& request, const Context& context) {
   RenderRequest wanted = request;
   wanted.wants_identity = false;
-  const RenderResult result = render_view(view, wanted, context);
-  return {result.frame.color_image(), result.seconds.render, result.statistics, result.seconds.prepare};
+  RenderResult result = render_view(view, wanted, context);
+  return {std::move(result.frame).color_image(), result.seconds.render, result.statistics, result.seconds.prepare};
 }
 
 std::vector<Shot> shoot_by_turns(std::size_t count, int rounds, const std::function<Shot(std::size_t)>& picture) {

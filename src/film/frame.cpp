@@ -9,11 +9,34 @@
 #include "film/block_sum.h"
 
 namespace sightline {
+namespace {
 
-Frame::Frame(int width, int height, AovSet aovs, std::uint32_t first_sample)
+/// ExactSum::to_double(), bit for bit, without the library's conversion of 128 bits.
+double to_double(const ExactSum& sum) {
+  const bool negative = sum.value < 0;
+  __extension__ typedef unsigned __int128 UInt128;
+  const UInt128 magnitude = negative ? -static_cast<UInt128>(sum.value) : static_cast<UInt128>(sum.value);
+  const auto high = static_cast<std::uint64_t>(magnitude >> 64), low = static_cast<std::uint64_t>(magnitude);
+  double result = 0;
+  if (high == 0) {
+    result = static_cast<double>(low) * 0x1p-64;
+  } else {
+    // The leading 64 bits; the last of them remembers whether any follow, so that rounding sees the whole number.
+    const int rest = 64 - std::countl_zero(high);
+    const std::uint64_t top = static_cast<std::uint64_t>(magnitude >> rest) | ((low << (64 - rest)) != 0 ? 1u : 0u);
+    result = std::ldexp(static_cast<double>(top), rest - 64);
+  }
+  return negative ? -result : result;
+}
+
+}  // namespace
+
+Frame::Frame(int width, int height, AovSet aovs, std::uint32_t first_sample, Colors colors)
     : width_(width), height_(height), tiles_x_((width + kTileSize - 1) / kTileSize), aovs_(aovs), first_sample_(first_sample) {
   const std::size_t pixel_count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (colors == Colors::single && !aovs.has(Aov::variance)) single_.resize(pixel_count, Color(0));
   for (const AovInfo& info : aov_table()) {
+    if (info.id == Aov::color && has_single_colors()) continue;
     if (aovs.has(info.id)) sums_[static_cast<std::size_t>(info.id)].resize(pixel_count * info.channels.size());
   }
   samples_done_.resize(static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>((height + kTileSize - 1) / kTileSize), 0);
@@ -26,6 +49,7 @@ Frame& Frame::operator=(Frame&& other) noexcept {
   aovs_ = other.aovs_, first_sample_ = other.first_sample_;
   sums_ = std::move(other.sums_);
   light_image_ = std::move(other.light_image_);
+  single_ = std::move(other.single_);
   samples_done_ = std::move(other.samples_done_);
   nonfinite_ = other.nonfinite_.load(), saturated_ = other.saturated_.load(), bad_sample_ = other.bad_sample_.load();
   return *this;
@@ -59,6 +83,16 @@ void Frame::count_bad_sample(std::uint32_t pixel, std::uint32_t sample) {
 void Frame::add_color(std::uint32_t pixel, std::uint32_t sample, const Color& radiance) {
   if (!is_finite(radiance)) {
     count_bad_sample(pixel, sample);
+    return;
+  }
+  if (has_single_colors()) {
+    bool kept = true;
+    for (int c = 0; c < 3; ++c) {
+      ExactSum sum;
+      kept &= sum.add(radiance[c]);
+      single_[pixel][c] = static_cast<float>(to_double(sum));
+    }
+    if (!kept) saturated_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
   ExactSum* sum = &sums_[0][std::size_t{3} * pixel];
@@ -100,8 +134,29 @@ bool Frame::add_exactly(Aov aov, const PixelBlock& block) {
   return true;
 }
 
+// Stores one sample a pixel; false where a value is not one that sums would keep as it is.
+bool Frame::set_single(const PixelBlock& block) {
+  constexpr float kLeastKept = 0x1p-40f, kLimit = 0x1p40f;
+  if (block.count != 1) return false;
+  bool good = true;
+  for (const float* values : block.channel) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const float size = std::fabs(values[lane]);
+      good &= size == 0 || (size >= kLeastKept && size < kLimit);
+    }
+  }
+  if (!good) return false;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if (!block.inside[lane]) continue;
+    // Sums know no negative zero.
+    single_[block.pixel[lane]] = Color(block.channel[0][lane], block.channel[1][lane], block.channel[2][lane]) + 0.f;
+  }
+  return true;
+}
+
 void Frame::add_color(const PixelBlock& block) {
-  if (!aovs_.has(Aov::variance) && add_exactly(Aov::color, block)) return;
+  if (has_single_colors() && set_single(block)) return;
+  if (!has_single_colors() && !aovs_.has(Aov::variance) && add_exactly(Aov::color, block)) return;
   for (std::size_t i = 0; i < kLanes * block.count; ++i) {
     const std::size_t lane = i % kLanes;
     if (!block.inside[lane]) continue;
@@ -119,6 +174,7 @@ void Frame::add(Aov aov, const PixelBlock& block) {
 }
 
 void Frame::enable_light_image() {
+  if (has_single_colors()) throw Error(ErrorCode::bug, "a picture of single samples has no light image");
   for (const Aov aov : kLightImageLayers) light_image_[static_cast<std::size_t>(aov)].resize(sums(aov).size());
 }
 
@@ -147,28 +203,6 @@ double Frame::mean_samples_done() const {
   return sum / (static_cast<double>(width_) * height_);
 }
 
-namespace {
-
-/// ExactSum::to_double(), bit for bit, without the library's conversion of 128 bits.
-double to_double(const ExactSum& sum) {
-  const bool negative = sum.value < 0;
-  __extension__ typedef unsigned __int128 UInt128;
-  const UInt128 magnitude = negative ? -static_cast<UInt128>(sum.value) : static_cast<UInt128>(sum.value);
-  const auto high = static_cast<std::uint64_t>(magnitude >> 64), low = static_cast<std::uint64_t>(magnitude);
-  double result = 0;
-  if (high == 0) {
-    result = static_cast<double>(low) * 0x1p-64;
-  } else {
-    // The leading 64 bits; the last of them remembers whether any follow, so that rounding sees the whole number.
-    const int rest = 64 - std::countl_zero(high);
-    const std::uint64_t top = static_cast<std::uint64_t>(magnitude >> rest) | ((low << (64 - rest)) != 0 ? 1u : 0u);
-    result = std::ldexp(static_cast<double>(top), rest - 64);
-  }
-  return negative ? -result : result;
-}
-
-}  // namespace
-
 Vec3 Frame::value(Aov aov, std::uint32_t pixel) const { return value(aov, pixel, has_light_image() ? mean_samples_done() : 0); }
 
 Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) const {
@@ -176,6 +210,7 @@ Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) cons
   const std::vector<ExactSum>& arrived = light_image_[static_cast<std::size_t>(aov)];
   const std::uint32_t samples = samples_done_[tile_of_pixel(pixel)];
   Vec3 result(0);
+  if (aov == Aov::color && has_single_colors() && samples > 0) return single_[pixel];
   if (sums.empty() || samples == 0) return result;
   const std::size_t channels = aov_info(aov).channels.size();
   for (std::size_t c = 0; c < channels; ++c) {
@@ -188,7 +223,15 @@ Vec3 Frame::value(Aov aov, std::uint32_t pixel, double light_image_samples) cons
 
 Color Frame::color(std::uint32_t pixel) const { return value(Aov::color, pixel); }
 
-ColorImage Frame::color_image() const {
+ColorImage Frame::color_image() && {
+  if (!has_single_colors() || samples_done() == 0) return std::as_const(*this).color_image();
+  ColorImage image;
+  image.width = width_, image.height = height_;
+  image.pixels = std::move(single_);
+  return image;
+}
+
+ColorImage Frame::color_image() const& {
   ColorImage image(width_, height_);
   if (has_light_image()) {
     const double mean = mean_samples_done();
@@ -203,6 +246,10 @@ ColorImage Frame::color_image() const {
     for (int y = t.y0; samples > 0 && y < t.y1; ++y) {
       for (int x = t.x0; x < t.x1; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        if (has_single_colors()) {
+          image.pixels[pixel] = single_[pixel];
+          continue;
+        }
         for (int c = 0; c < 3; ++c)
           image.pixels[pixel][c] = static_cast<float>(to_double(sums[3 * pixel + static_cast<std::size_t>(c)]) / samples);
       }
@@ -272,7 +319,7 @@ std::optional<BadSample> Frame::first_bad_sample() const {
 }
 
 std::uint64_t Frame::memory_bytes() const {
-  std::uint64_t bytes = samples_done_.size() * sizeof(std::uint32_t);
+  std::uint64_t bytes = samples_done_.size() * sizeof(std::uint32_t) + single_.size() * sizeof(Color);
   for (const auto& sums : sums_) bytes += sums.size() * sizeof(ExactSum);
   for (const auto& sums : light_image_) bytes += sums.size() * sizeof(ExactSum);
   return bytes;
@@ -281,6 +328,7 @@ std::uint64_t Frame::memory_bytes() const {
 void Frame::merge(const Frame& other) {
   if (other.width_ != width_ || other.height_ != height_ || other.aovs_.bits() != aovs_.bits())
     throw input_error("frames differ in size or layers and cannot be merged");
+  if (has_single_colors() || other.has_single_colors()) throw Error(ErrorCode::bug, "pictures of single samples cannot be merged");
   if (other.has_light_image()) enable_light_image();
   for (std::size_t layer = 0; layer < kAovCount; ++layer) {
     for (std::size_t i = 0; i < other.light_image_[layer].size(); ++i) light_image_[layer][i].value += other.light_image_[layer][i].value;

@@ -48,12 +48,17 @@ struct PixelBlock {
 class Frame {
  public:
   static constexpr int kTileSize = 32;
+  /// What is kept of colours: exact sums, or, of a picture with one sample a pixel to which nothing will ever be added, the samples
+  /// themselves: a quarter of the memory, and the very same colours. Such a frame has neither a light image nor a file form and cannot be
+  /// merged; one with the layer `variance` keeps sums all the same.
+  enum class Colors { summed, single };
 
-  Frame(int width, int height, AovSet aovs, std::uint32_t first_sample = 0);
+  Frame(int width, int height, AovSet aovs, std::uint32_t first_sample = 0, Colors colors = Colors::summed);
 
   int width() const { return width_; }
   int height() const { return height_; }
   AovSet aovs() const { return aovs_; }
+  bool has_single_colors() const { return !single_.empty(); }
   std::uint32_t first_sample() const { return first_sample_; }
   std::size_t tile_count() const { return samples_done_.size(); }
   Tile tile(std::size_t index) const;
@@ -85,7 +90,9 @@ class Frame {
   /// Means.
   Color color(std::uint32_t pixel) const;
   Vec3 value(Aov aov, std::uint32_t pixel) const;
-  ColorImage color_image() const;
+  ColorImage color_image() const&;
+  /// Of a frame that is no longer needed: its single colours are handed over.
+  ColorImage color_image() &&;
   /// All layers and the sample count as channels; no metadata.
   LayeredImage to_layered_image() const;
   /// Relative standard error of the picture's mean luminance per pixel, root mean square over pixels with the mean clamped from below by a
@@ -100,7 +107,7 @@ class Frame {
   /// Adds the samples of `other` (same size, layers and seed; disjoint samples). Bit for bit what one run would have summed.
   void merge(const Frame& other);
 
-  /// Raw sums for files; channel-major within a pixel. (See frame_file.h.)
+  /// Raw sums for files; channel-major within a pixel. (See frame_file.h.) None of single colours.
   std::span<const ExactSum> sums(Aov aov) const { return sums_[static_cast<std::size_t>(aov)]; }
   std::span<ExactSum> sums(Aov aov) { return sums_[static_cast<std::size_t>(aov)]; }
   std::span<const ExactSum> light_image_sums(Aov aov) const { return light_image_[static_cast<std::size_t>(aov)]; }
@@ -112,6 +119,7 @@ class Frame {
 
  private:
   bool add_exactly(Aov aov, const PixelBlock& block);
+  bool set_single(const PixelBlock& block);
   std::uint32_t tile_of_pixel(std::uint32_t pixel) const;
   Vec3 value(Aov aov, std::uint32_t pixel, double light_image_samples) const;
   void count_bad_sample(std::uint32_t pixel, std::uint32_t sample);
@@ -120,6 +128,7 @@ class Frame {
   AovSet aovs_;
   std::uint32_t first_sample_ = 0;
   std::array<std::vector<ExactSum>, kAovCount> sums_, light_image_;
+  std::vector<Color> single_;  ///< Colors::single: by pixel
   std::vector<std::uint32_t> samples_done_;
   std::atomic<std::uint64_t> nonfinite_{0}, saturated_{0}, bad_sample_{~std::uint64_t{0}};
 };

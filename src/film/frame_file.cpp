@@ -45,6 +45,7 @@ std::size_t raw_size(const Frame& frame) {
 }  // namespace
 
 std::vector<std::byte> encode_frame(const Frame& frame, const FrameIdentity& identity, const std::string& note) {
+  if (frame.has_single_colors()) throw Error(ErrorCode::bug, "a picture of single samples has no file of sums");
   const nlohmann::json header = {{"width", frame.width()},
                                  {"height", frame.height()},
                                  {"layers", frame.aovs().bits()},

@@ -165,7 +165,9 @@ RenderResult render(const std::shared_ptr<const World>& world, const Camera& cam
   // All of it is known to fit before any of it is allocated. The frame comes first: visibilities that take what is free then see it.
   check_memory(with_world(picture_needs(size_px, request, method.light_image(job), context), *world), context);
   const AovSet aovs = frame_layers(request);
-  Frame frame(size_px.x, size_px.y, aovs, samples.begin);
+  // Sums are for those who add to a picture later; one sample a pixel that is merely looked at is kept as it is.
+  const bool looked_at = spp == 1 && !request.wants_identity && !request.checkpoint && !request.resume && !method.light_image(job);
+  Frame frame(size_px.x, size_px.y, aovs, samples.begin, looked_at ? Frame::Colors::single : Frame::Colors::summed);
   const std::unique_ptr<Visibility> visibility = visibility_info.make(world, settings.visibility, context);
   job.visibility = visibility.get();
   method.check(world->scene(), job);

@@ -128,6 +128,9 @@ class LightTable {
   Color emission(std::uint32_t light, const TexturePoint& point, bool front_side) const;
   /// Radiance of the environment from unit `direction` (0 without one) and the density of sampling it.
   Color environment(const Vec3& direction) const;
+  /// Radiance from `count` unit directions; grows `radiance` if needed. What the single call gives, but for the last digits of the angles
+  /// by which maps of latitude and longitude are read.
+  void environment(const Vec3Batch& direction, std::size_t count, Vec3Batch& radiance) const;
   /// Density of sampling it once it has been chosen.
   float environment_density(const Vec3& direction) const;
   float environment_pdf(const Vec3& position, const Vec3& normal, const Vec3& direction) const;

@@ -6,9 +6,11 @@
 #include <numbers>
 
 #include "base/core/error.h"
+#include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
 #include "base/sample/warp.h"
 #include "shade/cube_map.h"
+#include "shade/lights/environment_lanes.h"
 
 namespace sightline {
 
@@ -114,6 +116,16 @@ void EnvironmentLight::build(const Context& context) {
 
 Color EnvironmentLight::radiance(const Vec3& direction) const {
   return map_ ? scale_ * map_->radiance(local_from_world_ * direction) : scale_;
+}
+
+void EnvironmentLight::radiance(const Vec3Batch& direction, std::size_t count, Vec3Batch& colors) const {
+  EnvironmentPicture picture;
+  if (map_) {
+    picture = {map_->values(), map_->width(), map_->height(), map_->channels(), map_->mapping(), local_from_world_, scale_};
+    if (picture.has_lanes()) return environment_radiance(picture, direction, count, colors);
+  }
+  if (colors.x.size() < padded(count)) colors.resize(count);
+  for (std::size_t i = 0; i < count; ++i) store(colors, i, radiance(load(direction, i)));
 }
 
 EnvironmentLight::Cell EnvironmentLight::cell_of(const Vec2& uv) const {

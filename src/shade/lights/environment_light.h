@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/core/aligned.h"
 #include "base/core/context.h"
 #include "base/math/vec.h"
 #include "base/sample/alias_table.h"
@@ -24,6 +25,8 @@ class EnvironmentLight {
 
   /// From unit `direction` in world space.
   Color radiance(const Vec3& direction) const;
+  /// From many directions (see LightTable::environment).
+  void radiance(const Vec3Batch& direction, std::size_t count, Vec3Batch& colors) const;
   /// A unit direction in world space; the zero vector where the picture has none. Density: pdf(direction).
   Vec3 sample(const Vec2& u) const;
   float pdf(const Vec3& direction) const;

@@ -41,6 +41,9 @@ class EnvironmentMap {
   int width() const { return image_->width; }
   int height() const { return image_->height; }
   EnvironmentMapping mapping() const { return mapping_; }
+  /// Interleaved floats, row by row.
+  const float* values() const { return values_; }
+  int channels() const { return channels_; }
 
  private:
   std::shared_ptr<const Image> image_;  ///< floats

@@ -237,6 +237,12 @@ Color LightTable::environment(const Vec3& direction) const {
   return impl_->lists.environment ? impl_->lists.environment->radiance(direction) : Color(0);
 }
 
+void LightTable::environment(const Vec3Batch& direction, std::size_t count, Vec3Batch& radiance) const {
+  if (impl_->lists.environment) return impl_->lists.environment->radiance(direction, count, radiance);
+  if (radiance.x.size() < padded(count)) radiance.resize(count);
+  for (AlignedVector<float>* values : {&radiance.x, &radiance.y, &radiance.z}) std::fill(values->begin(), values->end(), 0.f);
+}
+
 float LightTable::environment_density(const Vec3& direction) const {
   return impl_->lists.environment ? impl_->lists.environment->pdf(direction) : 0.f;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -80,6 +81,59 @@ TEST(Frame, BlocksOfSamplesGiveTheSameBitsAsSingleOnes) {
   AovSet with_variance = aovs;
   with_variance.add(Aov::variance);
   compare(8, with_variance, [&] { return ordinary(random); });
+}
+
+// The same samples, one a pixel, block by block.
+std::pair<Frame, Frame> summed_and_single(const std::vector<Color>& samples) {
+  std::pair<Frame, Frame> frames{Frame(16, 4, {}), Frame(16, 4, {}, 0, Frame::Colors::single)};
+  for (Frame* frame : {&frames.first, &frames.second}) {
+    for (std::uint32_t row = 0; row < 4; ++row) {
+      std::vector<std::uint32_t> pixel(16);
+      std::iota(pixel.begin(), pixel.end(), 16 * row);
+      std::vector<std::uint8_t> inside(16, 1);
+      inside[row] = 0;
+      Vec3Batch values;
+      values.resize(16);
+      for (std::size_t i = 0; i < 16; ++i)
+        values.x[i] = samples[16 * row + i].x, values.y[i] = samples[16 * row + i].y, values.z[i] = samples[16 * row + i].z;
+      frame->add_color({pixel.data(), inside.data(), 0, 1, {values.x.data(), values.y.data(), values.z.data()}});
+    }
+    frame->set_samples_done(0, 1);
+  }
+  return frames;
+}
+
+TEST(Frame, SingleColorsAreThoseOfSumsBitForBit) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> ordinary(-4.f, 4.f), exponent(-80.f, 80.f);
+  const auto compare = [&](auto value) {
+    std::vector<Color> samples(64);
+    for (Color& c : samples) c = {value(), value(), value()};
+    const auto [summed, single] = summed_and_single(samples);
+    ASSERT_TRUE(single.has_single_colors());
+    const ColorImage a = summed.color_image(), b = single.color_image();
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(a.pixels[i][c]), std::bit_cast<std::uint32_t>(b.pixels[i][c]));
+        EXPECT_EQ(summed.color(i)[c], single.color(i)[c]);
+      }
+    }
+    EXPECT_EQ(summed.nonfinite_samples(), single.nonfinite_samples());
+    EXPECT_EQ(summed.saturated_samples(), single.saturated_samples());
+  };
+  compare([&] { return ordinary(random); });
+  compare([&] { return random() % 2 ? 0.f : -0.f; });
+  compare([&] { return std::exp2(exponent(random)); });
+  compare([&] { return random() % 9 ? 1.f : std::numeric_limits<float>::infinity(); });
+}
+
+TEST(Frame, SingleColorsTakeAQuarterOfTheMemory) {
+  const Frame summed(320, 320, {}), single(320, 320, {}, 0, Frame::Colors::single);
+  EXPECT_LT(4 * single.memory_bytes(), summed.memory_bytes() + 4 * 4 * single.tile_count());
+  // Whose spread is asked for needs its sums.
+  AovSet aovs;
+  aovs.add(Aov::variance);
+  EXPECT_FALSE(Frame(16, 16, aovs, 0, Frame::Colors::single).has_single_colors());
 }
 
 TEST(Frame, TilesCoverEveryPixelOnce) {

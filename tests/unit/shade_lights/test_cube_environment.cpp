@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "base/core/error.h"
+#include "base/math/frame.h"
+#include "base/math/vec3_batch.h"
 #include "shade/analytic/polygon.h"
 #include "shade/cube_map.h"
 #include "shade/lights/cube_resample.h"
@@ -46,6 +48,39 @@ TEST(CubeEnvironment, DirectionsAndPlacesInThePictureAreInverses) {
     const Vec3 d = any_direction(random);
     const Vec3 back = environment_direction(EnvironmentMapping::cube, environment_uv(EnvironmentMapping::cube, d));
     EXPECT_LT(glm::length(back - d), 5e-6f) << d.x << " " << d.y << " " << d.z;
+  }
+}
+
+// Directions at once against one by one: of cubes the very same, of other maps but for the last digits of angles, which a smooth picture
+// of this size turns into less than a thousandth of what is between its neighbouring pixels.
+TEST(EnvironmentBatch, AgreesWithSingleLookUps) {
+  test::Uniform random(5);
+  const auto color = [](int x, int y) { return uneven(x % 11, y % 13); };
+  const auto smooth = [](int x, int y) { return 2 + std::sin(0.05f * static_cast<float>(x)) * std::cos(0.07f * static_cast<float>(y)); };
+  const Environment environments[] = {cube_of(cube_picture(7, color)), mapped_as(picture(256, 128, smooth), EnvironmentMapping::latlong),
+                                      mapped_as(picture(64, 64, smooth), EnvironmentMapping::octahedral), Environment{}};
+  for (Environment e : environments) {
+    e.scale = Color(0.5f, 1, 2);
+    const Vec3 axis = any_direction(random);
+    e.world_from_environment = Mat3(frame_from_normal(axis).tangent, frame_from_normal(axis).bitangent, axis);
+    const EnvironmentLight light(e, Context{});
+    constexpr std::size_t count = 1003;
+    Vec3Batch direction, radiance;
+    direction.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      // Poles, seams and edges of faces among them.
+      Vec3 d = any_direction(random);
+      if (i % 5 == 0) d[static_cast<int>(i / 5 % 3)] = 0, d = glm::normalize(d);
+      if (i < 6) d = Vec3(0), d[static_cast<int>(i / 2)] = i % 2 ? 1.f : -1.f;
+      store(direction, i, e.world_from_environment * d);
+    }
+    light.radiance(direction, count, radiance);
+    const bool exact = e.mapping != EnvironmentMapping::latlong || !e.image;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 d = load(direction, i);
+      const Color single = light.radiance(d), batch = load(radiance, i);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(batch[c], single[c], exact ? 0 : 1e-5f) << d.x << " " << d.y << " " << d.z;
+    }
   }
 }
 
