@@ -31,6 +31,8 @@ std::shared_ptr<const BakeView> keep_bake(const fs::path& path, const BakeId& id
   }
 }
 
+std::string open_name(const BakeId& id) { return fmt::format("{}-{}-{}", id.kind, id.version, id.key_text()); }
+
 std::optional<fs::path> absolute_path_in(const char* variable) {
   const char* const value = std::getenv(variable);
   if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
@@ -44,7 +46,7 @@ fs::path BakeStore::path_of(const BakeId& id) const {
 }
 
 std::shared_ptr<const BakeView> BakeStore::get(const BakeId& id, const Context& context, const Maker& make) {
-  const std::string name = fmt::format("{}-{}-{}", id.kind, id.version, id.key_text());
+  const std::string name = open_name(id);
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = open_.find(name); found != open_.end()) return found->second;
@@ -80,6 +82,13 @@ std::shared_ptr<const BakeView> BakeStore::get(const BakeId& id, const Context& 
   const std::lock_guard lock(mutex_);
   events_.push_back(std::move(event));
   return open_.emplace(name, std::move(bake)).first->second;
+}
+
+void BakeStore::close(const BakeId& id) {
+  std::error_code ignored;
+  if (const fs::path path = path_of(id); path.empty() || !fs::exists(path, ignored)) return;
+  const std::lock_guard lock(mutex_);
+  open_.erase(open_name(id));
 }
 
 std::vector<BakeStore::Event> BakeStore::events() const {

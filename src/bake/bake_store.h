@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/bake_file.h"
+#include "bake/recent_values.h"
 #include "base/core/context.h"
 
 namespace sightline {
@@ -38,6 +39,11 @@ class BakeStore {
   /// warning with the reason, and replaced. Where the folder cannot be written the bake stays in memory, with a warning.
   std::shared_ptr<const BakeView> get(const BakeId& id, const Context& context, const Maker& make);
 
+  /// Closes a bake that has a file, once nothing else holds it: what something smaller was made from need not stay in memory.
+  void close(const BakeId& id);
+  /// What is not worth a file, kept over frames.
+  RecentValues& recent() { return recent_; }
+
   std::vector<Event> events() const;
   /// Bytes of all bakes that are open.
   std::uint64_t open_bytes() const;
@@ -47,6 +53,7 @@ class BakeStore {
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<const BakeView>> open_;
   std::vector<Event> events_;
+  RecentValues recent_;
 };
 
 /// $XDG_CACHE_HOME/sightline/bakes, or ~/.cache/sightline/bakes; empty where neither is known.

@@ -151,5 +151,46 @@ TEST(DefaultBakeDirectory, FollowsTheCacheDirectory) {
   before ? setenv("XDG_CACHE_HOME", saved.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
+TEST(BakeStore, ClosesWhatHasAFileAndKeepsWhatHasNone) {
+  const Folder folder("close");
+  Kitchen kitchen;
+  BakeStore on_disk(folder.path()), in_memory;
+  for (BakeStore* store : {&on_disk, &in_memory}) {
+    const auto held = kitchen.get(*store);
+    store->close(kSmallId);
+    EXPECT_EQ(store->open_bytes(), store == &on_disk ? 0 : held->bytes());
+    EXPECT_EQ(held->array<float>("weights")[2], 2.5f);
+    EXPECT_EQ(kitchen.get(*store)->array<float>("weights")[2], 2.5f);
+  }
+  EXPECT_EQ(kitchen.made, 2);
+}
+
+struct Weighed {
+  std::uint64_t size;
+  std::uint64_t bytes() const { return size; }
+};
+
+TEST(RecentValues, AreMadeOnceUntilOthersTakeTheirPlace) {
+  RecentValues values(100);
+  int made = 0;
+  const auto get = [&](std::uint64_t key, std::uint64_t size = 40) {
+    return values.get<Weighed>({"weighed", 1, {0, key}}, [&] { return ++made, Weighed{size}; });
+  };
+  const auto first = get(1);
+  EXPECT_EQ(get(1), first);
+  EXPECT_EQ(made, 1);
+  get(2), get(1), get(3);  // the second was used least recently
+  EXPECT_EQ(values.bytes(), 80u);
+  EXPECT_EQ(get(1), first);
+  EXPECT_EQ(made, 3);
+  get(2);
+  EXPECT_EQ(made, 4);
+  // One that is larger than all there is room for is kept alone.
+  get(4, 1000);
+  EXPECT_EQ(values.bytes(), 1000u);
+  get(4, 1000);
+  EXPECT_EQ(made, 5);
+}
+
 }  // namespace
 }  // namespace sightline::test
