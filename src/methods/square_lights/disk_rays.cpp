@@ -53,6 +53,7 @@ std::span<std::uint8_t> MapTracer::trace(const DiskRays& rays, const Frame3& fra
   fill(batch_.origin, 0, padded(count), origin);
   tracer_.occluded(batch_, occluded_, BatchKind::shadow, counts_);
   std::fill(map_.begin(), map_.end(), rest);
+  for (const std::uint32_t point : rays.hidden) map_[point] = 0;
   for (std::size_t k = 0; k < count; ++k) map_[point_[k]] = occluded_[k] ^ 1;
   return map_;
 }

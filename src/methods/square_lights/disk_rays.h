@@ -18,6 +18,7 @@ namespace sightline::square_lights {
 struct DiskRays {
   Vec3Batch direction;
   AlignedVector<std::uint32_t> point;  ///< padded to kLanes
+  std::vector<std::uint32_t> hidden;   ///< points of a map that are hidden whatever is traced
   std::size_t size = 0;
   std::size_t count() const { return size; }
 };

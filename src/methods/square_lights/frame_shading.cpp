@@ -1,5 +1,7 @@
 #include "methods/square_lights/frame_shading.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,10 +48,7 @@ Coverage without_gradient(Coverage coverage) { return coverage == Coverage::grad
 
 void make_room(std::size_t lights, FrameShading::Scratch& scratch) {
   if (scratch.visible.size() >= lights) return;
-  for (AlignedVector<float>* values :
-       {&scratch.visible, &scratch.distance, &scratch.other, &scratch.near_x, &scratch.near_y, &scratch.near_z, &scratch.near_r})
-    values->resize(padded(lights));
-  scratch.near.resize(padded(lights));
+  for (AlignedVector<float>* values : {&scratch.visible, &scratch.distance, &scratch.other}) values->resize(padded(lights));
 }
 
 /// The least distance of all; with that of another occluder goes the gradient of the receiver's own, whose boundary it is no longer.
@@ -127,10 +126,12 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
       const float occluder_radius = occluder.field.radius() * scale_of(occluder.world_from_field);
       bool any = false;
       for (std::size_t i = 0; i < world_lights_.count; ++i) {
-        use.may.push_back(may_hide(center, radius, occluder_center, occluder_radius, world_lights_.light(i)));
-        any |= use.may.back() != 0;
+        const bool may = may_hide(center, radius, occluder_center, occluder_radius, world_lights_.light(i));
+        use.may.push_back(may ? 1.f : 0.f);
+        any |= may;
       }
       if (!any) continue;
+      use.may.resize(padded(use.may.size()), 0.f);
       const Mat4 field_from_world = glm::inverse(occluder.world_from_field);
       use.field_from_receiver = field_from_world * object.world_from_object;
       use.turn = Mat3(use.field_from_receiver) / scale_of(use.field_from_receiver);
@@ -140,9 +141,9 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
     }
   }
   // What a light reaches around its centre, as the fields have it.
-  for (std::size_t i = 0; i < world_lights_.count; ++i) {
-    const float sine = std::min(0.55f * world_lights_.r[i], 1.f);
-    reach_.push_back({1 - 2 * sine * sine, 2 * sine * std::sqrt(1 - sine * sine)});
+  for (const float r : world_lights_.r) {
+    const float sine = std::min(0.55f * r, 1.f);
+    reach_.cosine.push_back(1 - 2 * sine * sine), reach_.sine.push_back(2 * sine * std::sqrt(1 - sine * sine));
   }
 }
 
@@ -174,60 +175,25 @@ void FrameShading::tables_of(std::uint32_t object, const VertexHit& hit, int cou
   }
 }
 
-void FrameShading::list_active(const Receiver& receiver, const Vec3& normal, Scratch& scratch) const {
-  const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
-  const LightSet& lights = receiver.lights;
-  scratch.active.clear();
-  for (std::size_t i = 0; i < lights.count; ++i) {
-    const float r_p = lights.r[i] * plane_scale_, horizon = 1 + r_p;
-    const float z = lights.x[i] * normal.x + lights.y[i] * normal.y + lights.z[i] * normal.z;
-    if (1 - z >= horizon * horizon) continue;
-    if (combine ? scratch.distance[i] > -0.70710678f * r_p : scratch.visible[i] > 0)
-      scratch.active.push_back(static_cast<std::uint32_t>(i));
-  }
-}
-
-std::size_t FrameShading::list_near(const Receiver& receiver, const Use& use, const Vec3& position, Scratch& scratch) const {
-  const LightSet& lights = receiver.lights;
-  const Vec3 to = use.center - position;
-  const float distance = glm::length(to), sine = use.radius / distance;
-  const bool inside = !(sine < 1);
-  const float cosine = inside ? 0 : std::sqrt(1 - sine * sine);
-  std::size_t count = 0;
-  for (const std::uint32_t i : scratch.active) {
-    if (!use.may[i]) continue;
-    const Vec3 c(lights.x[i], lights.y[i], lights.z[i]);
-    // Outside the cones of light and occluder, both of which are narrower than half a sphere.
-    const Reach& reach = reach_[i];
-    if (!inside && reach.cosine > 0.1f && glm::dot(c, to) < distance * (cosine * reach.cosine - sine * reach.sine)) continue;
-    const Vec3 turned = use.turn * c;
-    scratch.near_x[count] = turned.x, scratch.near_y[count] = turned.y, scratch.near_z[count] = turned.z,
-    scratch.near_r[count] = lights.r[i];
-    scratch.near[count++] = i;
-  }
-  for (std::size_t k = count; k < padded(count); ++k) scratch.near_x[k] = scratch.near_y[k] = scratch.near_r[k] = 0, scratch.near_z[k] = 1;
-  return count;
-}
-
 void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Vec3& normal, Scratch& scratch) const {
   const bool combine = settings_.combine == SquareLightsSettings::Combine::distance;
   if (receiver.occluders.empty() && !receiver.planes) return;
-  list_active(receiver, normal, scratch);
+  if (combine)
+    find_active(receiver.lights, normal, plane_scale_, scratch.distance, -0.70710678f, scratch.active);
+  else
+    find_active(receiver.lights, normal, plane_scale_, scratch.visible, 0, scratch.active);
+  NearLights& near = scratch.near;
   for (const Use& use : receiver.occluders) {
-    const std::size_t count = list_near(receiver, use, position, scratch);
-    if (count == 0) continue;
+    find_near(receiver.lights, scratch.active, use.may, reach_, occluder_cone(use.center, use.radius, position), use.turn, near);
+    if (near.count == 0) continue;
     const OccluderSamples samples = use.occluder->field.samples(transform_point(use.field_from_receiver, position));
-    const std::size_t n = padded(count);
-    occluder_distances(use.occluder->field, samples,
-                       {std::span(scratch.near_x).first(n), std::span(scratch.near_y).first(n), std::span(scratch.near_z).first(n),
-                        std::span(scratch.near_r).first(n)},
-                       scratch.other);
-    scratch.counts.occluder_tests += count;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t i = scratch.near[k];
+    occluder_distances(use.occluder->field, samples, near.lanes(), scratch.other);
+    scratch.counts.occluder_tests += near.count;
+    for (std::size_t k = 0; k < near.count; ++k) {
+      const std::uint32_t i = near.index[k];
       if (combine)
         take_nearer(scratch, i, scratch.other[k]);
-      else if (const float d = scratch.other[k], r_p = scratch.near_r[k] * plane_scale_; d < r_p)
+      else if (const float d = scratch.other[k], r_p = near.r[k] * plane_scale_; d < r_p)
         scratch.visible[i] *= coverage_ == Coverage::parallel ? covered_parallel(d, r_p) : covered_average(d, r_p);
     }
   }
@@ -235,9 +201,11 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
   const Vec3 world = transform_point(receiver.world_from_object, position);
   for (const PlanarOccluder& plane : bake_.planes()) {
     plane.see(world, scratch.plane);
-    for (const std::uint32_t i : scratch.active) {
+    if (scratch.plane.is_edge_on()) continue;
+    scratch.plane.outside(world_lights_.x, world_lights_.y, world_lights_.z, scratch.other);
+    for (const std::uint32_t i : scratch.active.indices()) {
       const float r_p = world_lights_.r[i] * plane_scale_;
-      const float d = scratch.plane.distance({world_lights_.x[i], world_lights_.y[i], world_lights_.z[i]}, r_p);
+      const float d = PlanarOccluder::Seen::distance(scratch.other[i], r_p);
       if (d >= r_p) continue;
       if (combine)
         take_nearer(scratch, i, d);
@@ -432,9 +400,21 @@ Color FrameShading::by_texels(std::uint32_t i, std::uint32_t object, Scratch& sc
   return sum;
 }
 
+std::uint32_t FrameShading::object_of(std::uint32_t vertex) const {
+  const auto next = std::upper_bound(object_of_vertex_.begin(), object_of_vertex_.end(), vertex);
+  return static_cast<std::uint32_t>(next - object_of_vertex_.begin()) - 1;
+}
+
+void FrameShading::prefetch_vertex(std::uint32_t i) const {
+  const std::uint32_t object = object_of(i);
+  const VertexTables* tables = directions_.texels == 0 ? &bake_.tables(object) : nullptr;
+  if (tables == nullptr || tables->raw.empty()) return;
+  const std::int8_t* table = tables->raw.data() + std::size_t{i - bake_.scene().objects()[object].first} * kTableCells;
+  for (std::size_t line = 0; line < kTableCells; line += kCacheLine) hwy::Prefetch(table + line);
+}
+
 Color FrameShading::shade_vertex(std::uint32_t i, Scratch& scratch) const {
-  const auto object =
-      static_cast<std::uint32_t>(std::upper_bound(object_of_vertex_.begin(), object_of_vertex_.end(), i) - object_of_vertex_.begin()) - 1;
+  const std::uint32_t object = object_of(i);
   if (directions_.texels > 0) return by_texels(i, object, scratch);
   const ShadingVertices& vertices = bake_.scene().vertices();
   const Receiver& receiver = receivers_[object];

@@ -8,6 +8,7 @@
 
 #include "film/view.h"
 #include "methods/square_lights/error_bound.h"
+#include "methods/square_lights/near_lanes.h"
 #include "methods/square_lights/shade_lanes.h"
 #include "methods/square_lights/square_bake.h"
 #include "methods/square_lights/texel_visibility.h"
@@ -32,8 +33,8 @@ class FrameShading {
   /// Buffers of one thread.
   struct Scratch {
     AlignedVector<float> visible, distance, other, gradient_x, gradient_y;
-    std::vector<std::uint32_t> active, near;  ///< lights worth looking at, by number
-    AlignedVector<float> near_x, near_y, near_z, near_r;
+    ActiveLights active;
+    NearLights near;
     LightSet local, turned;  ///< lights listed for one receiver, in world space, and in another
     CutRefiner refiner;
     PlanarOccluder::Seen plane;
@@ -45,6 +46,8 @@ class FrameShading {
     std::uint32_t expanded_vertex[3] = {~0u, ~0u, ~0u};
     ShadingCounts counts;
   };
+  /// Asks memory for what shade_vertex(i) will read first, while others are shaded.
+  void prefetch_vertex(std::uint32_t i) const;
   /// Radiance towards the camera of vertex `i` (of all objects).
   Color shade_vertex(std::uint32_t i, Scratch& scratch) const;
   /// The same at a point within a triangle, by interpolated distances; position and frame in world space.
@@ -62,10 +65,10 @@ class FrameShading {
   struct Use {
     const Occluder* occluder = nullptr;
     Mat4 field_from_receiver{1};
-    Mat3 turn{1};                   ///< the same for directions
-    Vec3 center{0};                 ///< of its sphere, in the receiver's space
-    float radius = 0;               ///< there
-    std::vector<std::uint8_t> may;  ///< by light: whether any vertex of the receiver may lose some of it
+    Mat3 turn{1};              ///< the same for directions
+    Vec3 center{0};            ///< of its sphere, in the receiver's space
+    float radius = 0;          ///< there
+    AlignedVector<float> may;  ///< by light, padded: 1 if any vertex of the receiver may lose some of it, else 0
   };
   struct Receiver {
     Mat4 world_from_object{1}, object_from_world{1};
@@ -89,25 +92,18 @@ class FrameShading {
                       const Reflection& reflection, Scratch& scratch) const;
   Color lit_split(std::uint32_t object, const ReceiverTables& tables, const Vec3& position, const Frame3& frame, const Vec3& wo,
                   const Reflection& reflection, Scratch& scratch) const;
-  /// Lights that are above the horizon and not hidden already: scratch.active.
-  void list_active(const Receiver& receiver, const Vec3& normal, Scratch& scratch) const;
-  /// Those of them that come near an occluder's cone, turned into its space: scratch.near.
-  std::size_t list_near(const Receiver& receiver, const Use& use, const Vec3& position, Scratch& scratch) const;
   void hide(const Receiver& receiver, const Vec3& position, const Vec3& normal, Scratch& scratch) const;
   Color by_texels(std::uint32_t i, std::uint32_t object, Scratch& scratch) const;
   Vec3 towards_eye(const Receiver& receiver, const Vec3& position) const;
+  std::uint32_t object_of(std::uint32_t vertex) const;
 
   const SquareBake& bake_;
   const SquareLightsSettings& settings_;
   bool orthographic_ = false;
   float plane_scale_ = 0.70710678f;
   Coverage coverage_ = Coverage::parallel;
-  /// Of the cone around a light's centre within which an occluder may touch its square.
-  struct Reach {
-    float cosine, sine;
-  };
   LightSet world_lights_;
-  std::vector<Reach> reach_;
+  ReachLanes reach_;
   std::vector<std::int32_t> cut_;  ///< where lights are split at each receiver: what to start from
   std::vector<Receiver> receivers_;
   std::vector<std::uint32_t> object_of_vertex_;  ///< first vertex of each object, in order

@@ -41,6 +41,7 @@ SquareKernel::SquareKernel(const World& world, const View& view, const SquareBak
   for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(most);
   inside_.resize(most);
   rays_.resize(most), color_.resize(most);
+  missed_.resize(most), missed_direction_.resize(most), missed_color_.resize(most);
 }
 
 void SquareKernel::render_tile(const Tile& tile, SampleRange samples, Frame& frame, PassStatistics& statistics) {
@@ -62,11 +63,9 @@ void SquareKernel::render_tile(const Tile& tile, SampleRange samples, Frame& fra
     trace(tile, sample, statistics);
     const bool surfaces = !simple_ || aovs;
     if (surfaces) world_.surfaces(rays_, hits_, surfaces_);
+    color_background();
     for (std::size_t i = 0; i < count_; ++i) {
-      if (!hits_.hit(i))
-        store(color_, i, world_.lights().environment(load(rays_.direction, i)));
-      else
-        store(color_, i, simple_ ? vertex_color(i, Vec3(0)) : surface_color(i));
+      if (hits_.hit(i)) store(color_, i, simple_ ? vertex_color(i, Vec3(0)) : surface_color(i));
       if (aovs && inside_[i]) write_aovs(frame, i);
     }
     for (std::size_t at = 0; at < count_; at += kLanes) {
@@ -89,6 +88,22 @@ void SquareKernel::trace(const Tile&, std::uint32_t sample, PassStatistics& stat
   std::fill_n(rays_.t_near.begin(), count_, 0.f);
   std::fill_n(rays_.t_far.begin(), count_, std::numeric_limits<float>::infinity());
   world_.tracer().intersect(rays_, hits_, BatchKind::primary, statistics.rays);
+}
+
+void SquareKernel::color_background() {
+  std::size_t missed = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    missed_[missed] = static_cast<std::uint32_t>(i);
+    missed += hits_.hit(i) ? 0 : 1;
+  }
+  if (missed == 0) return;
+  if (missed == count_) {
+    world_.lights().environment(rays_.direction, count_, color_);
+    return;
+  }
+  for (std::size_t k = 0; k < missed; ++k) store(missed_direction_, k, load(rays_.direction, missed_[k]));
+  world_.lights().environment(missed_direction_, missed, missed_color_);
+  for (std::size_t k = 0; k < missed; ++k) store(color_, missed_[k], load(missed_color_, k));
 }
 
 Color SquareKernel::vertex_color(std::size_t i, const Vec3& position) const {

@@ -24,6 +24,7 @@ class SquareKernel {
 
  private:
   void trace(const Tile& tile, std::uint32_t sample, PassStatistics& statistics);
+  void color_background();
   Color vertex_color(std::size_t i, const Vec3& position) const;
   Color surface_color(std::size_t i);
   void write_aovs(Frame& frame, std::size_t i);
@@ -44,6 +45,8 @@ class SquareKernel {
   HitBatch hits_;
   SurfaceBatch surfaces_;
   Vec3Batch color_;
+  AlignedVector<std::uint32_t> missed_;  ///< rays that hit nothing, their directions and what they see
+  Vec3Batch missed_direction_, missed_color_;
   FrameShading::Scratch scratch_;
 };
 

@@ -18,6 +18,8 @@ namespace {
 
 // Vertices that one task shades.
 constexpr std::size_t kGrain = 256;
+// How many vertices ahead memory is asked for tables: one takes some hundred nanoseconds.
+constexpr std::size_t kAhead = 2;
 
 }  // namespace
 
@@ -74,8 +76,10 @@ void SquareLightsMethod::render_pass(const RenderJob& job, SampleRange range, Fr
     parallel_for(context, vertices, kGrain, [&](std::size_t begin, std::size_t end) {
       FrameShading::Scratch& own = scratch[static_cast<std::size_t>(worker_index())];
       for (std::size_t i = begin; i < end; ++i) {
-        const Color color = shading.shade_vertex(static_cast<std::uint32_t>(i), own);
-        for (int c = 0; c < 3; ++c) radiance[4 * i + static_cast<std::size_t>(c)] = color[c];
+        const std::uint32_t vertex = bake.scene().order()[i];
+        if (i + kAhead < end) shading.prefetch_vertex(bake.scene().order()[i + kAhead]);
+        const Color color = shading.shade_vertex(vertex, own);
+        for (int c = 0; c < 3; ++c) radiance[4 * std::size_t{vertex} + static_cast<std::size_t>(c)] = color[c];
       }
     });
     for (const FrameShading::Scratch& s : scratch) counts += s.counts;

@@ -11,10 +11,17 @@ namespace {
 // Tables that a worker makes at a time: some ten milliseconds.
 constexpr std::size_t kTables = 32;
 
-/// Directions of a shell's tables that may hit the bounding sphere; within it, those of the whole disk.
-DiskRays shell_rays(const DiskGrid& grid, int shell, float zoom) {
-  const float radius = apparent_radius(shell_radius(shell));
-  return make_disk_rays(grid, zoom, [&](const Vec2& p) { return p.x * p.x + p.y * p.y <= radius * radius; });
+/// Directions of a shell's tables that may hit the bounding sphere; within it, those of the whole disk. Those into the solid ball, whose
+/// radius is `solid` bounding radii, are not traced: a shell's tables all look at the centre, so that they are the same for each.
+DiskRays shell_rays(const DiskGrid& grid, int shell, float zoom, float solid) {
+  const float radius = apparent_radius(shell_radius(shell)), inner = solid > 0 ? apparent_radius(shell_radius(shell) / solid) : 0;
+  const auto wanted = [&](const Vec2& p) { return glm::dot(p, p) <= radius * radius; };
+  const auto hidden = [&](const Vec2& p) { return glm::dot(p, p) < inner * inner; };
+  DiskRays rays = make_disk_rays(grid, zoom, [&](const Vec2& p) { return wanted(p) && !hidden(p); });
+  for (std::uint32_t i = 0; i < grid.count(); ++i) {
+    if (const Vec2 p = zoom * grid.point(i); wanted(p) && hidden(p)) rays.hidden.push_back(i);
+  }
+  return rays;
 }
 
 }  // namespace
@@ -27,7 +34,7 @@ void bake_occluder_tables(const Tracer& tracer, const Vec3& center, float radius
   const std::array<float, kShells> zoom = shell_zoom(options);
   std::vector<DiskRays> shells;
   shells.reserve(kShells);
-  for (int k = 0; k < kShells; ++k) shells.push_back(shell_rays(grid, k, zoom[k]));
+  for (int k = 0; k < kShells; ++k) shells.push_back(shell_rays(grid, k, zoom[k], options.solid / radius));
 
   const std::size_t count = tables.size() / kTableCells;
   std::mutex mutex;

@@ -30,38 +30,74 @@ Texel texel_at(int face, int x, int y) {
   return {place.face, cell(place.u), cell(place.v)};
 }
 
-struct Corner {
-  Texel texel;
-  float weight;
+/// Four texels around a direction and their weights. Around a corner of the cube there are three: the share of the fourth is theirs.
+struct Corners {
+  std::array<std::size_t, 4> texel;
+  std::array<float, 4> weight;
 };
-/// Four texels around a direction. Around a corner of the cube there are three: the share of the fourth is theirs.
-std::array<Corner, 4> corners_at(const Vec3& direction) {
+Corners corners_at(const Vec3& direction) {
   const CubePlace place = cube_place(direction);
   const float u = (place.u + 1) * (kShellSize / 2.f) - 0.5f, v = (place.v + 1) * (kShellSize / 2.f) - 0.5f;
   const int x = std::clamp(static_cast<int>(std::floor(u)), -1, kShellSize - 1);
   const int y = std::clamp(static_cast<int>(std::floor(v)), -1, kShellSize - 1);
   const float fx = std::clamp(u - static_cast<float>(x), 0.f, 1.f), fy = std::clamp(v - static_cast<float>(y), 0.f, 1.f);
-  std::array<Corner, 4> corners;
+  Corners corners;
+  corners.weight = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+  if (x >= 0 && y >= 0 && x + 1 < kShellSize && y + 1 < kShellSize) {
+    const std::size_t first = Texel{place.face, x, y}.index();
+    corners.texel = {first, first + 1, first + kShellSize, first + kShellSize + 1};
+    return corners;
+  }
   const auto is_beyond = [](int i) { return i < 0 || i >= kShellSize; };
-  int missing = -1;
-  for (int k = 0; k < 4; ++k) {
-    const int cx = x + (k & 1), cy = y + (k >> 1);
-    corners[k] = {texel_at(place.face, cx, cy), (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy)};
+  std::size_t missing = 4;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int cx = x + static_cast<int>(k & 1), cy = y + static_cast<int>(k >> 1);
+    corners.texel[k] = texel_at(place.face, cx, cy).index();
     if (is_beyond(cx) && is_beyond(cy)) missing = k;
   }
-  if (missing >= 0) {
-    const float share = corners[missing].weight / 3;
-    for (int k = 0; k < 4; ++k) corners[k].weight = k == missing ? 0 : corners[k].weight + share;
+  if (missing < 4) {
+    const float share = corners.weight[missing] / 3;
+    for (std::size_t k = 0; k < 4; ++k) corners.weight[k] = k == missing ? 0 : corners.weight[k] + share;
   }
   return corners;
 }
 
-/// Cosine and sine by which a frame about `to` sees directions turned that the least rotation from frame.normal to `to` takes along.
-Vec2 least_turn(const Frame3& frame, const Vec3& to) {
-  const Vec3 axis = glm::cross(frame.normal, to), moved = glm::cross(axis, frame.tangent);
-  const Vec3 tangent = frame.tangent + moved + glm::cross(axis, moved) / (1 + glm::dot(frame.normal, to));
-  const Frame3 there = frame_from_normal(to);
-  return {glm::dot(tangent, there.tangent), glm::dot(tangent, there.bitangent)};
+/// The frames that tables of each texel are in; z is towards the centre.
+const std::vector<Frame3>& texel_frames() {
+  static const std::vector<Frame3> frames = [] {
+    std::vector<Frame3> f(kShellPoints);
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = frame_from_normal(-shell_direction(i));
+    return f;
+  }();
+  return frames;
+}
+
+/// Cosines and sines by which four frames see directions turned that the least rotations from frame.normal to their normals take along.
+/// Four numbers side by side, so that the compiler makes vectors of them.
+struct LeastTurns {
+  std::array<float, 4> cosine, sine;
+};
+LeastTurns least_turns(const Frame3& frame, const std::array<const Frame3*, 4>& there) {
+  using Four = std::array<float, 4>;
+  Four to[3], own_tangent[3], own_bitangent[3];
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (int c = 0; c < 3; ++c) {
+      to[c][k] = there[k]->normal[c], own_tangent[c][k] = there[k]->tangent[c], own_bitangent[c][k] = there[k]->bitangent[c];
+    }
+  }
+  const Vec3 n = frame.normal, t = frame.tangent;
+  LeastTurns turns;
+  for (std::size_t k = 0; k < 4; ++k) {
+    // axis = n x to; the tangent moves by axis x t + axis x (axis x t) / (1 + n . to).
+    const float ax = n.y * to[2][k] - to[1][k] * n.z, ay = n.z * to[0][k] - to[2][k] * n.x, az = n.x * to[1][k] - to[0][k] * n.y;
+    const float mx = ay * t.z - t.y * az, my = az * t.x - t.z * ax, mz = ax * t.y - t.x * ay;
+    const float scale = 1 + (n.x * to[0][k] + n.y * to[1][k] + n.z * to[2][k]);
+    const float x = t.x + mx + (ay * mz - my * az) / scale, y = t.y + my + (az * mx - mz * ax) / scale,
+                z = t.z + mz + (ax * my - mx * ay) / scale;
+    turns.cosine[k] = x * own_tangent[0][k] + y * own_tangent[1][k] + z * own_tangent[2][k];
+    turns.sine[k] = x * own_bitangent[0][k] + y * own_bitangent[1][k] + z * own_bitangent[2][k];
+  }
+  return turns;
 }
 
 }  // namespace
@@ -80,6 +116,20 @@ Vec3 shell_direction(std::size_t i) {
   const auto part = [](std::size_t value) { return static_cast<int>(value % kShellSize); };
   return Texel{static_cast<int>(texel / (kShellSize * kShellSize)), part(texel), part(texel / kShellSize)}.direction();
 }
+
+namespace {
+
+/// apparent_radius() of the shells.
+const std::array<float, kShells>& shell_outlines() {
+  static const std::array<float, kShells> outlines = [] {
+    std::array<float, kShells> o;
+    for (int k = 0; k < kShells; ++k) o[k] = apparent_radius(shell_radius(k));
+    return o;
+  }();
+  return outlines;
+}
+
+}  // namespace
 
 float apparent_radius(float rho) {
   if (rho <= 1) return 1;
@@ -134,23 +184,26 @@ OccluderSamples OccluderField::samples(const Vec3& position) const {
   std::array<float, 2> scale, unit, share{1 - between, between};
   for (int s = 0; s < 2; ++s) {
     const float shell = shell_radius(first + s);
-    const float stretch = rho >= kStretched && shell >= kStretched ? here / apparent_radius(shell) : 1;
+    const float stretch = rho >= kStretched && shell >= kStretched ? here / shell_outlines()[first + s] : 1;
     scale[s] = zoom_[first + s] * stretch;
     unit[s] = scale[s] * share[s];
   }
 
-  const std::array<Corner, 4> corners = corners_at(out);
+  const Corners corners = corners_at(out);
+  const std::vector<Frame3>& frames = texel_frames();
+  const LeastTurns turns = least_turns(
+      result.frame, {&frames[corners.texel[0]], &frames[corners.texel[1]], &frames[corners.texel[2]], &frames[corners.texel[3]]});
   float hidden = 0;
-  for (int k = 0; k < 4; ++k) {
-    const std::size_t texel = corners[k].texel.index();
-    const Vec2 turn = least_turn(result.frame, -corners[k].texel.direction());
-    for (int s = 0; s < 2; ++s) {
-      const int i = 4 * s + k;
-      result.table[i] = static_cast<std::size_t>(first + s) * kShellPoints + texel;
-      result.turn[i] = turn * (kTableSize / (2 * scale[s]));
-      result.code_unit[i] = corners[k].weight * unit[s] * kDistanceStep;
-      result.cell_unit[i] = corners[k].weight * unit[s] * (2.f / kTableSize);
-      if (!hidden_.empty()) hidden += corners[k].weight * share[s] * 4 * scale[s] * scale[s] * hidden_[result.table[i]];
+  for (std::size_t s = 0; s < 2; ++s) {
+    const std::size_t shell = (static_cast<std::size_t>(first) + s) * kShellPoints;
+    const float cells = kTableSize / (2 * scale[s]), hidden_scale = share[s] * 4 * scale[s] * scale[s];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t i = 4 * s + k, table = shell + corners.texel[k];
+      result.table[i] = static_cast<std::int32_t>(table);
+      result.turn_x[i] = turns.cosine[k] * cells, result.turn_y[i] = turns.sine[k] * cells;
+      result.code_unit[i] = corners.weight[k] * unit[s] * kDistanceStep;
+      result.cell_unit[i] = corners.weight[k] * unit[s] * (2.f / kTableSize);
+      if (!hidden_.empty()) hidden += corners.weight[k] * hidden_scale * hidden_[table];
     }
   }
   result.hidden_area = !hidden_.empty() ? hidden : rho > 1 ? kPi * here * here : 4;
@@ -167,21 +220,22 @@ float OccluderField::distance(const OccluderSamples& samples, const Vec3& c, flo
   const float farthest = samples.sin_half * std::sqrt(1 - reach * reach) + samples.cos_half * reach;
   if (p.x * p.x + p.y * p.y > 2 * (farthest * farthest)) return kBeyondOccluder;
 
-  float d = 0;
+  std::array<float, 8> part;
   for (int i = 0; i < 8; ++i) {
     constexpr float last = kTableSize - 1, middle = last / 2;
-    const Vec2 turn = samples.turn[i];
+    const Vec2 turn(samples.turn_x[i], samples.turn_y[i]);
     const float u = turn.x * p.x + turn.y * p.y + middle, v = turn.x * p.y - turn.y * p.x + middle;
     const float cu = std::clamp(u, 0.f, last), cv = std::clamp(v, 0.f, last);
     const int x = std::min(static_cast<int>(cu), kTableSize - 2), y = std::min(static_cast<int>(cv), kTableSize - 2);
     const float fx = cu - static_cast<float>(x), fy = cv - static_cast<float>(y);
-    const std::int8_t* const corner = tables_.data() + samples.table[i] * kTableCells + y * kTableSize + x;
+    const std::int8_t* const corner = tables_.data() + static_cast<std::size_t>(samples.table[i]) * kTableCells + y * kTableSize + x;
     const auto blend = [](float t, float a, float b) { return a + t * (b - a); };
     const float code = blend(fy, blend(fx, corner[0], corner[1]), blend(fx, corner[kTableSize], corner[kTableSize + 1]));
     // Beyond the square lies nothing but distance.
     const float beyond = std::sqrt((u - cu) * (u - cu) + (v - cv) * (v - cv));
-    d += samples.code_unit[i] * code + samples.cell_unit[i] * beyond;
+    part[i] = samples.code_unit[i] * code + samples.cell_unit[i] * beyond;
   }
+  const float d = ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
 
   // Deviation: Eq. 9 takes every boundary for a straight line, which hides half of a square around an occluder however small that is. It
   // cannot hide more than its own area. The D at which the mean coverage over all turns leaves that much: Eq. 9 solved for D, but for

@@ -18,6 +18,7 @@ namespace sightline::square_lights {
 struct OccluderFieldOptions {
   int resolution = 64;  ///< rays along an edge of a table's square
   bool zoom = true;     ///< far shells' tables cover just the occluder; off is the paper
+  float solid = 0;      ///< radius of a ball about the centre within a solid object (solid_ball.h): rays into it are known to be hidden
 };
 
 /// The sampling of the space around an occluder [Zhou2005].
@@ -40,14 +41,15 @@ inline constexpr float kBeyondOccluder = 1e3f;
 /// The tables around a point, for any number of lights. Each has a frame of its own, turned from that of the point by the least rotation
 /// between their axes, which on the disk is a turn about its centre: p in cells of table i is turn * p, counted from the middle.
 struct OccluderSamples {
-  std::array<std::size_t, 8> table{};  ///< index into the field's tables
-  std::array<Vec2, 8> turn{};          ///< cosine and sine, times cells per plane unit
-  std::array<float, 8> code_unit{};    ///< plane units per code of a distance, times the table's weight
-  std::array<float, 8> cell_unit{};    ///< plane units per cell, times the table's weight
-  Frame3 frame;                        ///< at the point itself; z is towards the centre
-  float sin_half = 0, cos_half = 1;    ///< of half the angle of the bounding cone; sin_half = 2 where it is all around
-  float hidden_area = 0;               ///< at most this much of the disk is hidden
-  bool inside = false;                 ///< nearer than the first shell
+  alignas(32) std::array<std::int32_t, 8> table{};  ///< index into the field's tables
+  alignas(32) std::array<float, 8> turn_x{};        ///< cosine, times cells per plane unit
+  alignas(32) std::array<float, 8> turn_y{};        ///< sine, times the same
+  alignas(32) std::array<float, 8> code_unit{};     ///< plane units per code of a distance, times the table's weight
+  alignas(32) std::array<float, 8> cell_unit{};     ///< plane units per cell, times the table's weight
+  Frame3 frame;                                     ///< at the point itself; z is towards the centre
+  float sin_half = 0, cos_half = 1;                 ///< of half the angle of the bounding cone; sin_half = 2 where it is all around
+  float hidden_area = 0;                            ///< at most this much of the disk is hidden
+  bool inside = false;                              ///< nearer than the first shell
 };
 
 /// A field over bytes that it does not own, in the occluder's own space. kTableSlack bytes after the tables must be readable.
@@ -84,11 +86,12 @@ class OccluderField {
   std::shared_ptr<const std::vector<float>> measured_;
 };
 
-/// Lights as structure of arrays, padded to kLanes with radius 0.
+/// Lights as structure of arrays, padded to kLanes.
 struct LightLanes {
   std::span<const float> x, y, z, r;  ///< centres in the occluder's space, half diagonals on the sphere
+  std::size_t count = 0;              ///< of lights that are asked about
 };
-/// distance() for all lights on the machine's best vectors.
+/// distance() for all lights on the machine's best vectors; `distances` as long as they are padded.
 void occluder_distances(const OccluderField& field, const OccluderSamples& samples, const LightLanes& lights, std::span<float> distances);
 
 /// As many tables as `tables` has room for, from number `first` on.

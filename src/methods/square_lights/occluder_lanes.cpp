@@ -1,4 +1,6 @@
 // OccluderField::distance() for many lights: the same operations in the same order, so that every target gives the same numbers.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "methods/square_lights/occluder_field.h"
@@ -21,24 +23,54 @@ using square_lights::kTableCells;
 using square_lights::kTableSize;
 using square_lights::OccluderSamples;
 
+// Eight tables side by side: however few lights come near an occluder, all lanes are of use.
+using Tables = hn::CappedTag<float, 8>;
+
 /// Two neighbouring codes of a row come in one word.
-HWY_INLINE V BlendCodes(D d, DI di, const std::int8_t* table, hn::Vec<DI> offset, V t) {
+HWY_INLINE hn::Vec<Tables> BlendCodes(Tables d, const std::int8_t* table, hn::Vec<hn::RebindToSigned<Tables>> offset, hn::Vec<Tables> t) {
+  const hn::RebindToSigned<Tables> di;
   const auto word = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(table), offset);
-  const V a = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<24>(word)));
-  const V b = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<16>(word)));
+  const auto a = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<24>(word)));
+  const auto b = hn::ConvertTo(d, hn::ShiftRight<24>(hn::ShiftLeft<16>(word)));
   return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+}
+
+/// D at the place (px, py) of the disk.
+HWY_INLINE float BlendTables(const std::int8_t* HWY_RESTRICT tables, const OccluderSamples& samples, float px, float py) {
+  const Tables d;
+  const hn::RebindToSigned<Tables> di;
+  const auto zero = hn::Zero(d), last = hn::Set(d, kTableSize - 1.f), middle = hn::Set(d, (kTableSize - 1.f) / 2);
+  const auto last_corner = hn::Set(di, kTableSize - 2);
+  const auto vx = hn::Set(d, px), vy = hn::Set(d, py);
+  alignas(32) std::array<float, 8> part;
+  for (std::size_t i = 0; i < 8; i += hn::Lanes(d)) {
+    const auto cosine = hn::Load(d, samples.turn_x.data() + i), sine = hn::Load(d, samples.turn_y.data() + i);
+    const auto u = hn::Add(hn::Add(hn::Mul(cosine, vx), hn::Mul(sine, vy)), middle);
+    const auto v = hn::Add(hn::Sub(hn::Mul(cosine, vy), hn::Mul(sine, vx)), middle);
+    const auto cu = hn::Min(hn::Max(u, zero), last), cv = hn::Min(hn::Max(v, zero), last);
+    const auto x = hn::Min(hn::ConvertTo(di, cu), last_corner), y = hn::Min(hn::ConvertTo(di, cv), last_corner);
+    const auto fx = hn::Sub(cu, hn::ConvertTo(d, x)), fy = hn::Sub(cv, hn::ConvertTo(d, y));
+    static_assert(kTableSize == 32 && kTableCells == 1024);
+    const auto offset = hn::Add(hn::ShiftLeft<10>(hn::Load(di, samples.table.data() + i)), hn::Add(hn::ShiftLeft<5>(y), x));
+    const auto top = BlendCodes(d, tables, offset, fx), bottom = BlendCodes(d, tables + kTableSize, offset, fx);
+    const auto code = hn::Add(top, hn::Mul(fy, hn::Sub(bottom, top)));
+    const auto du = hn::Sub(u, cu), dv = hn::Sub(v, cv);
+    const auto beyond = hn::Sqrt(hn::Add(hn::Mul(du, du), hn::Mul(dv, dv)));
+    hn::Store(hn::Add(hn::Mul(hn::Load(d, samples.code_unit.data() + i), code), hn::Mul(hn::Load(d, samples.cell_unit.data() + i), beyond)),
+              d, part.data() + i);
+  }
+  return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
 }
 
 void OccluderDistances(const std::int8_t* HWY_RESTRICT tables, const OccluderSamples& samples, const square_lights::LightLanes& lights,
                        float* HWY_RESTRICT distances) {
   const D d;
-  const DI di;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.f), last = hn::Set(d, kTableSize - 1.f), middle = hn::Set(d, (kTableSize - 1.f) / 2);
-  const auto last_corner = hn::Set(di, kTableSize - 2);
+  const V one = hn::Set(d, 1.f);
   const V3 tangent = set3(d, samples.frame.tangent), bitangent = set3(d, samples.frame.bitangent), normal = set3(d, samples.frame.normal);
   const V sin_half = hn::Set(d, samples.sin_half), cos_half = hn::Set(d, samples.cos_half);
   const V hidden_edge = hn::Set(d, std::sqrt(0.5f * samples.hidden_area)), beyond_occluder = hn::Set(d, square_lights::kBeyondOccluder);
-  for (std::size_t k = 0; k < lights.x.size(); k += hn::Lanes(d)) {
+  alignas(64) std::array<float, kLanes> x, y, least_distance;
+  for (std::size_t k = 0; k < lights.count; k += hn::Lanes(d)) {
     // disk_from_direction()
     const V3 c{hn::LoadU(d, lights.x.data() + k), hn::LoadU(d, lights.y.data() + k), hn::LoadU(d, lights.z.data() + k)};
     const V lx = dot3(c, tangent), ly = dot3(c, bitangent), lz = dot3(c, normal);
@@ -53,33 +85,18 @@ void OccluderDistances(const std::int8_t* HWY_RESTRICT tables, const OccluderSam
     const V farthest = hn::Add(hn::Mul(sin_half, hn::Sqrt(hn::Sub(one, hn::Mul(reach, reach)))), hn::Mul(cos_half, reach));
     const V place2 = hn::Add(hn::Mul(px, px), hn::Mul(py, py));
     const M out = hn::Gt(place2, hn::Mul(hn::Set(d, 2.f), hn::Mul(farthest, farthest)));
-    if (hn::AllTrue(d, out)) {
-      hn::StoreU(beyond_occluder, d, distances + k);
-      continue;
-    }
-
-    V sum = zero;
-    for (int i = 0; i < 8; ++i) {
-      const V cosine = hn::Set(d, samples.turn[i].x), sine = hn::Set(d, samples.turn[i].y);
-      const V u = hn::Add(hn::Add(hn::Mul(cosine, px), hn::Mul(sine, py)), middle);
-      const V v = hn::Add(hn::Sub(hn::Mul(cosine, py), hn::Mul(sine, px)), middle);
-      const V cu = hn::Min(hn::Max(u, zero), last), cv = hn::Min(hn::Max(v, zero), last);
-      const auto x = hn::Min(hn::ConvertTo(di, cu), last_corner), y = hn::Min(hn::ConvertTo(di, cv), last_corner);
-      const V fx = hn::Sub(cu, hn::ConvertTo(d, x)), fy = hn::Sub(cv, hn::ConvertTo(d, y));
-      const auto offset = hn::Add(hn::ShiftLeft<5>(y), x);
-      const std::int8_t* const table = tables + samples.table[i] * kTableCells;
-      const V top = BlendCodes(d, di, table, offset, fx), bottom = BlendCodes(d, di, table + kTableSize, offset, fx);
-      const V code = hn::Add(top, hn::Mul(fy, hn::Sub(bottom, top)));
-      const V du = hn::Sub(u, cu), dv = hn::Sub(v, cv);
-      const V beyond = hn::Sqrt(hn::Add(hn::Mul(du, du), hn::Mul(dv, dv)));
-      const V part = hn::Add(hn::Mul(hn::Set(d, samples.code_unit[i]), code), hn::Mul(hn::Set(d, samples.cell_unit[i]), beyond));
-      sum = hn::Add(sum, part);
-    }
     const V half_edge = hn::Max(hn::Mul(hn::Set(d, 0.5f), r), hn::Set(d, 1e-6f));
     const V s = hn::Div(hidden_edge, half_edge);
     const V corner = hn::Mul(hn::Set(d, 1.41421356f), hn::Sub(one, s)), straight = hn::Sub(one, hn::Mul(s, s));
     const V least = hn::Mul(half_edge, hn::IfThenElse(hn::Lt(s, hn::Set(d, 0.41421356f)), corner, straight));
-    hn::StoreU(hn::IfThenElse(out, beyond_occluder, hn::Max(sum, least)), d, distances + k);
+    hn::Store(px, d, x.data()), hn::Store(py, d, y.data());
+    hn::Store(hn::IfThenElse(out, beyond_occluder, least), d, least_distance.data());
+    const std::size_t lanes = std::min(hn::Lanes(d), lights.count - k);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      float& distance = distances[k + lane];
+      distance = least_distance[lane];
+      if (distance < square_lights::kBeyondOccluder) distance = std::max(BlendTables(tables, samples, x[lane], y[lane]), distance);
+    }
   }
 }
 

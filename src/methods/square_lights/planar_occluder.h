@@ -19,8 +19,13 @@ class PlanarOccluder {
   /// The polygon from one place: what many directions are asked about.
   class Seen {
    public:
-    /// As distance() has it, if less than `most`; else `most`.
+    /// As distance() has it, if less than `most`; else `most`. Where the square is hidden to its last corner, no more than minus `most`.
     float distance(const Vec3& c, float most) const;
+    /// The same from what outside() gave.
+    static float distance(float outside, float most);
+    /// For many directions, padded to kLanes: the greatest sine by which each lies outside of an edge.
+    void outside(std::span<const float> x, std::span<const float> y, std::span<const float> z, std::span<float> sines) const;
+    bool is_edge_on() const { return out_.empty(); }
 
    private:
     friend class PlanarOccluder;

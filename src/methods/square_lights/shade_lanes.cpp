@@ -116,28 +116,34 @@ HWY_INLINE void place_edge(D d, V at, std::int32_t* cell, float* fraction) {
 // Two texels of four channels at once where vectors are long enough.
 using Texels = hn::CappedTag<float, 8>;
 
-/// Integral of one table over [left, right] x [top, bottom]: two texels side by side, already weighted, to be added up.
-HWY_INLINE void add_square(const float* table, const Edges& e, std::size_t lane, float weight, float* sum) {
-  const Texels dt;
+/// Integral of the weighted tables over [left, right] x [top, bottom], of the left (first half) or right (second half) texels of each pair
+/// of neighbours that corners fall between: both halves are to be added up. `at` is where in the pair a vector begins.
+HWY_INLINE hn::Vec<Texels> SquareIntegral(Texels dt, const BrdfTable::Slices& slices, const Edges& e, std::size_t lane, std::size_t at) {
   constexpr std::size_t row = std::size_t{BrdfTable::kCorners} * 4;
-  const std::size_t left = static_cast<std::size_t>(e.left[lane]) * 4, right = static_cast<std::size_t>(e.right[lane]) * 4;
-  const float fl = e.fl[lane], fr = e.fr[lane], ft = e.ft[lane], fb = e.fb[lane];
-  const float* rows[4] = {table + static_cast<std::size_t>(e.top[lane]) * row, nullptr,
-                          table + static_cast<std::size_t>(e.bottom[lane]) * row, nullptr};
-  rows[1] = rows[0] + row, rows[3] = rows[2] + row;
-  const float row_weight[4] = {weight * (ft - 1), -weight * ft, weight * (1 - fb), weight * fb};
-  // S(right) - S(left), each between two corners: texel k of the pair has weights (1 - f, f).
-  alignas(32) const float left_weight[8] = {fl - 1, fl - 1, fl - 1, fl - 1, -fl, -fl, -fl, -fl};
-  alignas(32) const float right_weight[8] = {1 - fr, 1 - fr, 1 - fr, 1 - fr, fr, fr, fr, fr};
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(dt)) {
-    const auto wl = hn::Load(dt, left_weight + at), wr = hn::Load(dt, right_weight + at);
-    auto total = hn::Load(dt, sum + at);
-    for (int k = 0; k < 4; ++k) {
-      const auto difference = hn::MulAdd(hn::LoadU(dt, rows[k] + right + at), wr, hn::Mul(hn::LoadU(dt, rows[k] + left + at), wl));
-      total = hn::MulAdd(hn::Set(dt, row_weight[k]), difference, total);
-    }
-    hn::Store(total, dt, sum + at);
+  const std::size_t left = static_cast<std::size_t>(e.left[lane]) * 4 + at, right = static_cast<std::size_t>(e.right[lane]) * 4 + at;
+  const std::size_t top = static_cast<std::size_t>(e.top[lane]) * row, bottom = static_cast<std::size_t>(e.bottom[lane]) * row;
+  // S(bottom) - S(top), each between two rows.
+  const auto ft = hn::Set(dt, e.ft[lane]), fb = hn::Set(dt, e.fb[lane]), one = hn::Set(dt, 1.f);
+  const auto top0 = hn::Sub(ft, one), top1 = hn::Neg(ft), bottom0 = hn::Sub(one, fb);
+  // S(right) - S(left): the texels of a pair have weights (1 - f, f).
+  alignas(32) static constexpr float kFirst[8] = {1, 1, 1, 1, 0, 0, 0, 0}, kSlope[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+  const auto first = hn::Load(dt, kFirst + at), slope = hn::Load(dt, kSlope + at);
+  const auto right_weight = hn::MulAdd(slope, hn::Set(dt, e.fr[lane]), first);
+  const auto left_weight = hn::MulAdd(slope, hn::Set(dt, e.fl[lane]), first);
+  auto total = hn::Zero(dt);
+  for (int k = 0; k < slices.count; ++k) {
+    const float* const upper = slices.table[k] + top;
+    const float* const lower = slices.table[k] + bottom;
+    const auto column = [&](std::size_t x) {
+      auto sum = hn::Mul(hn::LoadU(dt, upper + x), top0);
+      sum = hn::MulAdd(hn::LoadU(dt, upper + row + x), top1, sum);
+      sum = hn::MulAdd(hn::LoadU(dt, lower + x), bottom0, sum);
+      return hn::MulAdd(hn::LoadU(dt, lower + row + x), fb, sum);
+    };
+    const auto difference = hn::NegMulAdd(column(left), left_weight, hn::Mul(column(right), right_weight));
+    total = hn::MulAdd(hn::Set(dt, slices.weight[k]), difference, total);
   }
+  return total;
 }
 
 HWY_ATTR Color Shade(const Frame3& frame, const BrdfTable::Slices& slices, const LightSet& lights, const float* visible, float plane_scale,
@@ -148,7 +154,10 @@ HWY_ATTR Color Shade(const Frame3& frame, const BrdfTable::Slices& slices, const
   const V cosine = hn::Set(d, slices.turn.x), sine = hn::Set(d, slices.turn.y);
   const float factor = 1 / (plane_scale * plane_scale);
   Edges e;
-  alignas(32) std::array<float, 4> total{};
+  const Texels dt;
+  constexpr std::size_t kParts = 8 / hn::MaxLanes(Texels());
+  hn::Vec<Texels> total[kParts];
+  for (auto& part : total) part = hn::Zero(dt);
   for (std::size_t i = 0; i < lights.x.size(); i += hn::Lanes(d)) {
     const V3 c{hn::Load(d, lights.x.data() + i), hn::Load(d, lights.y.data() + i), hn::Load(d, lights.z.data() + i)};
     const V v = hn::LoadU(d, visible + i);
@@ -168,14 +177,14 @@ HWY_ATTR Color Shade(const Frame3& frame, const BrdfTable::Slices& slices, const
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       if (!(e.weight[lane] > 0)) continue;
       ++lit;
-      alignas(32) float sum[8] = {};
-      for (int k = 0; k < slices.count; ++k) add_square(slices.table[k], e, lane, slices.weight[k], sum);
-      const float* radiance = lights.radiance.data() + (i + lane) * 4;
-      const float scaled = factor * e.weight[lane];
-      for (std::size_t k = 0; k < 3; ++k) total[k] += scaled * radiance[k] * (sum[k] + sum[k + 4]);
+      const auto light = hn::Mul(hn::LoadDup128(dt, lights.radiance.data() + (i + lane) * 4), hn::Set(dt, factor * e.weight[lane]));
+      for (std::size_t part = 0; part < kParts; ++part)
+        total[part] = hn::MulAdd(light, SquareIntegral(dt, slices, e, lane, part * hn::Lanes(dt)), total[part]);
     }
   }
-  return {total[0], total[1], total[2]};
+  alignas(32) std::array<float, 8> sums;
+  for (std::size_t part = 0; part < kParts; ++part) hn::Store(total[part], dt, sums.data() + part * hn::Lanes(dt));
+  return {sums[0] + sums[4], sums[1] + sums[5], sums[2] + sums[6]};
 }
 
 }  // namespace sightline::square_lights::HWY_NAMESPACE

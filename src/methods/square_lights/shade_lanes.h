@@ -29,7 +29,7 @@ struct LightSet {
   /// The same lights with centres turned by `rotation` (columns are images of the axes; need not be orthonormal: centres stay unit).
   void turned_from(const LightSet& other, const Mat3& rotation);
   SquareLight light(std::size_t i) const;
-  LightLanes lanes() const { return {x, y, z, r}; }
+  LightLanes lanes() const { return {x, y, z, r, count}; }
 };
 
 /// Where a receiver's own distances come from: one table at a vertex, three of them between vertices, none for deformable objects.

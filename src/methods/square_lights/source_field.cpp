@@ -115,13 +115,13 @@ void SourceField::lights_at(const Vec3& position, std::span<PatchLight> lights) 
   }
 }
 
-std::uint64_t source_field_bytes(const LocalLight& light) { return kSourceShellPoints * light.count() * sizeof(PackedPatch); }
+std::uint64_t source_field_bytes(const LocalLight& light) { return kSourcePoints * light.count() * sizeof(PackedPatch); }
 
 AlignedVector<PackedPatch> bake_source_field(const LocalLight& light, const Context& context) {
   const std::size_t count = light.count();
-  AlignedVector<PackedPatch> table(kSourceShellPoints * count);
+  AlignedVector<PackedPatch> table(kSourcePoints * count);
   const float radius = light.radius() > 0 ? light.radius() : 1.f;
-  parallel_for(context, kSourceShellPoints, 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, kSourcePoints, 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<PatchLight> lights(count);
     for (std::size_t point = begin; point < end; ++point) {
       const Vec3 from = source_radius(point / kSourceShellPoints) * point_direction(point % kSourceShellPoints);

@@ -8,6 +8,7 @@
 #include "base/core/error.h"
 #include "methods/square_lights/haar.h"
 #include "methods/square_lights/patch_coverage.h"
+#include "methods/square_lights/solid_ball.h"
 #include "methods/square_lights/texel_visibility.h"
 #include "shade/material_eval.h"
 
@@ -15,7 +16,8 @@ namespace sightline::square_lights {
 namespace {
 
 // Versions of what is stored; to be raised whenever the same input would give other bytes.
-constexpr std::uint32_t kLightsVersion = 2, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1;
+constexpr std::uint32_t kLightsVersion = 2, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1,
+                        kBrdfVersion = 1;
 // Points along an edge of a texel when an environment becomes a cube map.
 constexpr int kCubePoints = 16;
 
@@ -60,6 +62,12 @@ void add_geometry(BakeHash& hash, const Scene& scene, const ShadingObject& objec
 
 void add_vertices(BakeHash& hash, const VertexSpans& v) {
   hash.add(v.position).add(v.normal).add(v.tangent).add(v.geometric_normal).add(v.error);
+}
+
+/// The reflectance model with its parameters. Bytes between them may differ where nothing else does, which costs a table and nothing else.
+void add_model(BakeHash& hash, const Bsdf& bsdf) {
+  hash.add(bsdf.model().index());
+  std::visit([&](const auto& model) { hash.add(std::span(&model, 1)); }, bsdf.model());
 }
 
 /// Without the slack that look-ups may read past the end: a bake has its own.
@@ -128,14 +136,15 @@ std::uint64_t square_bake_bytes(const ShadingScene& scene, const SquareLightsSet
   return bytes + fields * occluder_field_bytes();
 }
 
-SquareBake::SquareBake(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context) : scene_(world) {
+SquareBake::SquareBake(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context)
+    : scene_(world, &store.recent()) {
   const std::uint64_t needed = square_bake_bytes(scene_, settings);
   if (context.memory_budget_bytes > 0 && needed + current_resident_bytes() > context.memory_budget_bytes)
     throw resource_error(fmt::format("square-lights: the tables of {} vertices take {:.1f} GB, more than the memory limit leaves",
                                      scene_.vertices().size(), static_cast<double>(needed) * 1e-9))
         .remedy("raise --memory-limit, or use a coarser mesh");
   make_lights(world, settings, store, context);
-  make_materials(world, settings, context);
+  make_materials(world, settings, store, context);
   if (needs_masks(settings) && !cube_.texels.empty()) {
     make_masks(world, settings, store, context);
   } else {
@@ -272,7 +281,10 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
       announce(context, fmt::format("occluder field of '{}'", object.name), occluder_field_bytes());
       const Scene alone = object_scene(world.scene(), object);
       const std::unique_ptr<Tracer> tracer = make_embree_tracer(alone, world.textures(), {}, context);
-      const AlignedVector<std::int8_t> tables = bake_occluder_field(*tracer, object.center, object.radius, options, rays_, context);
+      // Not part of the key: it changes the number of rays, not what they find.
+      OccluderFieldOptions traced = options;
+      traced.solid = solid_ball(world.scene(), object, object.center);
+      const AlignedVector<std::int8_t> tables = bake_occluder_field(*tracer, object.center, object.radius, traced, rays_, context);
       OccluderField field(object.center, object.radius, shell_zoom(options), whole_tables(tables));
       field.measure(context);
       const std::vector<BakeSection> sections{bake_section("tables", whole_tables(tables)), bake_section("hidden", field.hidden())};
@@ -360,9 +372,9 @@ void SquareBake::make_sources(const World& world, const SquareLightsSettings& se
   }
 }
 
-void SquareBake::make_materials(const World& world, const SquareLightsSettings& settings, const Context& context) {
+void SquareBake::make_materials(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context) {
   const std::size_t count = world.scene().materials.size() + 1;
-  brdfs_.resize(count), bsdfs_.resize(count), lobes_.resize(count);
+  materials_.resize(count), bsdfs_.resize(count);
   std::vector<bool> used(count, false);
   for (const std::uint32_t material : scene_.vertices().material) used[slot(material)] = true;
   // A footprint of the whole picture: textures give their mean.
@@ -372,14 +384,27 @@ void SquareBake::make_materials(const World& world, const SquareLightsSettings& 
     if (!used[m]) continue;
     const MaterialId id = m + 1 == count ? MaterialId() : MaterialId(m);
     bsdfs_[m] = make_bsdf(world.scene(), world.textures(), id, everywhere, 0.5f);
-    if (settings.sharp_lobes) lobes_[m] = SharpLobe::fit(bsdfs_[m]);
-    brdfs_[m] =
-        std::make_unique<BrdfTable>(BrdfTable::build(bsdfs_[m], settings.brdf_samples, context, lobes_[m].empty() ? nullptr : &lobes_[m]));
-    bytes_ += brdfs_[m]->bytes();
+    // Tables of a material hang on its parameters alone: they are made anew when one changes.
+    BakeHash hash;
+    add_model(hash, bsdfs_[m]);
+    hash.add(settings.brdf_samples).add(settings.sharp_lobes);
+    if (id.valid()) {
+      // What a BSDF only points at.
+      if (const auto* measured = std::get_if<MeasuredMaterial>(&world.scene().materials[id.index].model)) hash.add(measured->content_hash);
+    }
+    materials_[m] = store.recent().get<MaterialTables>({"square-lights.brdf", kBrdfVersion, hash.key()}, [&] {
+      SharpLobe lobe = settings.sharp_lobes ? SharpLobe::fit(bsdfs_[m]) : SharpLobe();
+      BrdfTable table = BrdfTable::build(bsdfs_[m], settings.brdf_samples, context, lobe.empty() ? nullptr : &lobe);
+      return MaterialTables{std::move(table), std::move(lobe)};
+    });
+    bytes_ += materials_[m]->bytes();
   }
 }
 
-const BrdfTable* SquareBake::brdf(std::uint32_t material) const { return brdfs_[slot(material)].get(); }
+const BrdfTable* SquareBake::brdf(std::uint32_t material) const {
+  const MaterialTables* tables = materials_[slot(material)].get();
+  return tables != nullptr ? &tables->brdf : nullptr;
+}
 
 void SquareBake::make_masks(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context) {
   const ShadingVertices& vertices = scene_.vertices();

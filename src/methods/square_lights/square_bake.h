@@ -38,6 +38,13 @@ struct VertexTables {
   bool empty() const { return raw.empty() && !compressed; }
 };
 
+/// What is made of a material: a table, and the lobe that is too sharp for it.
+struct MaterialTables {
+  BrdfTable brdf;
+  SharpLobe lobe;  ///< often empty
+  std::uint64_t bytes() const { return brdf.bytes(); }
+};
+
 /// Something that hides light from other objects.
 struct Occluder {
   std::uint32_t object = 0;  ///< of ShadingScene; for pieces of what stands still the static one
@@ -71,7 +78,7 @@ class SquareBake final : public Bake {
   /// Null for materials that no vertex has.
   const BrdfTable* brdf(std::uint32_t material) const;
   /// Empty where a material has no lobe too sharp for its table.
-  const SharpLobe& lobe(std::uint32_t material) const { return lobes_[slot(material)]; }
+  const SharpLobe& lobe(std::uint32_t material) const { return materials_[slot(material)]->lobe; }
   const Bsdf& bsdf(std::uint32_t material) const { return bsdfs_[slot(material)]; }
   /// What texture-dependent colours are divided by: the albedo of the BSDF that the table was made of.
   Color table_albedo(std::uint32_t material) const { return bsdfs_[slot(material)].albedo(); }
@@ -84,13 +91,13 @@ class SquareBake final : public Bake {
   const RayCounts& rays() const { return rays_; }
 
  private:
-  std::size_t slot(std::uint32_t material) const { return material == kDefaultMaterial ? brdfs_.size() - 1 : material; }
+  std::size_t slot(std::uint32_t material) const { return material == kDefaultMaterial ? bsdfs_.size() - 1 : material; }
   void make_lights(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_tables(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_occluders(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void add_occluder(const World& world, const ShadingObject& object, const Mat4& world_from_field, std::uint32_t index,
                     const SquareLightsSettings& settings, BakeStore& store, const Context& context);
-  void make_materials(const World& world, const SquareLightsSettings& settings, const Context& context);
+  void make_materials(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_sources(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
   void make_masks(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context);
 
@@ -101,8 +108,7 @@ class SquareBake final : public Bake {
   std::vector<VertexTables> tables_;
   std::vector<Occluder> occluders_;
   std::vector<PlanarOccluder> planes_;
-  std::vector<std::unique_ptr<BrdfTable>> brdfs_;  ///< by material, the default one last
-  std::vector<SharpLobe> lobes_;
+  std::vector<std::shared_ptr<const MaterialTables>> materials_;  ///< by material, the default one last
   std::vector<Bsdf> bsdfs_;
   std::shared_ptr<const BakeView> masks_held_;
   std::span<const std::uint16_t> masks_;

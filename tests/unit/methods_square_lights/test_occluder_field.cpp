@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include "base/core/error.h"
 #include "methods/square_lights/hemisphere_disk.h"
 #include "methods/square_lights/occluder_field.h"
+#include "methods/square_lights/solid_ball.h"
 #include "scene/scene.h"
 #include "shade/cube_map.h"
 #include "support/every_target.h"
@@ -277,8 +279,8 @@ TEST(OccluderField, LooksUpWhereverThePointIs) {
     const OccluderSamples samples = lazy.samples(position);
     float weight = 0;
     for (std::size_t i = 0; i < 8; ++i) {
-      EXPECT_LT(samples.table[i], kFieldTables);
-      weight += samples.cell_unit[i] * glm::length(samples.turn[i]);
+      EXPECT_LT(static_cast<std::size_t>(samples.table[i]), kFieldTables);
+      weight += samples.cell_unit[i] * std::hypot(samples.turn_x[i], samples.turn_y[i]);
     }
     EXPECT_NEAR(weight, 1, 1e-4f) << "weights of tables, whatever their scales";
     EXPECT_EQ(samples.inside, glm::length(position) < kInnerShell);
@@ -299,7 +301,8 @@ TEST(OccluderDistances, EqualTheScalarDefinitionOnEveryTarget) {
   for (int i = 0; i < 100; ++i) {
     const Vec3 position = field.center() + random.between(0.2f, 12) * random.unit();
     const OccluderSamples samples = field.samples(position);
-    for (const std::size_t t : samples.table) {
+    for (const std::int32_t index : samples.table) {
+      const auto t = static_cast<std::size_t>(index);
       for (std::size_t k = 0; k < kTableCells; ++k) tables[t * kTableCells + k] = static_cast<std::int8_t>(bits() % 255 - 127);
     }
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -311,7 +314,7 @@ TEST(OccluderDistances, EqualTheScalarDefinitionOnEveryTarget) {
     }
     for (const std::int64_t target : test::simd_targets()) {
       const test::PinnedTarget pinned(target);
-      occluder_distances(field, samples, {x, y, z, r}, distances);
+      occluder_distances(field, samples, {x, y, z, r, x.size()}, distances);
       for (std::size_t k = 0; k < x.size(); ++k)
         ASSERT_EQ(distances[k], field.distance(samples, {x[k], y[k], z[k]}, r[k])) << hwy::TargetName(target) << " " << k;
     }
@@ -358,6 +361,56 @@ TEST(OccluderBake, TracesWhatTheFormulaSays) {
       EXPECT_NEAR(static_cast<float>(rays.occlusion), 2 * cells, 0.03f * 2 * cells + 8) << shell;
     }
   }
+}
+
+TEST(OccluderBake, RaysIntoASolidBallNeedNotBeTraced) {
+  BakeFixture fixture;
+  OccluderFieldOptions known{64, true};
+  known.solid = 0.9f * fixture.radius;
+  for (const int shell : {0, 4, 5, 6, 11, 15}) {
+    RayCounts all, rest;
+    const std::size_t first = static_cast<std::size_t>(shell) * kShellPoints + 321;
+    EXPECT_EQ(fixture.bake(first, 3, rest, known), fixture.bake(first, 3, all, {64, true})) << shell;
+    EXPECT_LT(rest.occlusion, shell_radius(shell) < 0.9f ? 1 : 0.45f * static_cast<float>(all.occlusion)) << shell;
+  }
+}
+
+/// A cube of edge 2 about `center`, each face of four corners of its own.
+struct SixFaces {
+  std::vector<Vec3> positions;
+  std::vector<UVec3> triangles;
+  explicit SixFaces(const Vec3& center) {
+    for (int face = 0; face < kCubeFaces; ++face) {
+      const auto base = static_cast<std::uint32_t>(positions.size());
+      for (int k = 0; k < 4; ++k) positions.push_back(center + cube_direction(face, k % 2 ? 1.f : -1.f, k / 2 ? 1.f : -1.f));
+      triangles.emplace_back(base, base + 1, base + 3);
+      triangles.emplace_back(base, base + 3, base + 2);
+    }
+  }
+  float ball(const Vec3& center) const { return solid_ball(positions, triangles, center); }
+};
+
+TEST(SolidBall, TouchesTheNearestFaceOfAClosedSurface) {
+  const Vec3 center(4, -2, 1);
+  const SixFaces cube(center);
+  EXPECT_NEAR(cube.ball(center), 1, 2e-3f);
+  EXPECT_LE(cube.ball(center), 1);
+  EXPECT_NEAR(cube.ball(center + Vec3(0.3f, 0, -0.6f)), 0.4f, 1e-3f);
+  EXPECT_EQ(cube.ball(center + Vec3(1.5f, 0, 0)), 0);  // outside
+  EXPECT_EQ(cube.ball(center + Vec3(3, 3, 3)), 0);
+}
+
+TEST(SolidBall, IsNoneWhereTheSurfaceIsOpenOrTurnsOver) {
+  SixFaces open(Vec3(0)), turned(Vec3(0));
+  open.triangles.pop_back();
+  EXPECT_EQ(open.ball(Vec3(0)), 0);
+  std::swap(turned.triangles[3].x, turned.triangles[3].y);
+  EXPECT_EQ(turned.ball(Vec3(0)), 0);
+  SixFaces moved(Vec3(0));
+  moved.positions[5].x += 1e-4f;
+  EXPECT_EQ(moved.ball(Vec3(0)), 0);
+  moved.positions[5].x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(moved.ball(Vec3(0)), 0);
 }
 
 TEST(OccluderBake, IsTheSameForAnyNumberOfThreads) {

@@ -62,7 +62,16 @@ TEST(PlanarOccluder, ALimitOnTheDistanceChangesNothingBelowIt) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 c = random_direction(random);
     const float d = plane->distance({0.2f, 1, 0.3f}, c);
-    EXPECT_FLOAT_EQ(seen.distance(c, 0.1f), std::min(d, 0.1f));
+    // Deeper inside than the limit only that is known.
+    if (d > -0.1f) {
+      EXPECT_FLOAT_EQ(seen.distance(c, 0.1f), std::min(d, 0.1f));
+    } else {
+      EXPECT_LE(seen.distance(c, 0.1f), -0.0999f);
+      EXPECT_GE(seen.distance(c, 0.1f), d);
+    }
+    float sine = 0;
+    seen.outside({&c.x, 1}, {&c.y, 1}, {&c.z, 1}, {&sine, 1});
+    EXPECT_EQ(PlanarOccluder::Seen::distance(sine, 0.1f), seen.distance(c, 0.1f));
   }
 }
 

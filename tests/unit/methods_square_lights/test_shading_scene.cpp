@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/core/error.h"
 #include "methods/square_lights/shading_scene.h"
 #include "scene/builtin/builtin.h"
@@ -32,6 +34,49 @@ TEST(ShadingScene, NothingOfAMovingObjectChangesInItsOwnSpace) {
   EXPECT_EQ(a.vertices().position, b.vertices().position);
   EXPECT_EQ(a.vertices().normal, b.vertices().normal);
   EXPECT_EQ(a.vertices().tangent, b.vertices().tangent);
+}
+
+TEST(ShadingScene, TakesKnownGeometryAndNoOther) {
+  const Scene scene = builtin("pair");
+  RecentValues recent;
+  const auto first_world = world_at(scene, 0);
+  const ShadingScene first(*first_world, &recent), moved(*world_at(scene, 0.7f), &recent);
+  // The very same arrays, in other places.
+  EXPECT_EQ(first.vertices().position.data(), moved.vertices().position.data());
+  EXPECT_EQ(first.key(), moved.key());
+  EXPECT_NE(first.objects()[1].world_from_object, moved.objects()[1].world_from_object);
+  EXPECT_EQ(first.objects()[1].radius, ShadingScene(*first_world).objects()[1].radius);
+
+  const auto expect_other = [&](const auto& change) {
+    Scene changed = scene;
+    change(changed);
+    const ShadingScene other(*world_at(changed, 0), &recent);
+    EXPECT_NE(other.key(), first.key());
+    EXPECT_NE(other.vertices().position.data(), first.vertices().position.data());
+  };
+  expect_other([](Scene& s) { s.meshes.back().positions = SharedArray<Vec3>::copy_of(s.meshes.back().positions.span()); });
+  expect_other([](Scene& s) { s.instances.back().material_override = MaterialId(std::size_t{0}); });
+  expect_other([](Scene& s) { s.instances.pop_back(); });
+}
+
+TEST(ShadingScene, EveryVertexHasItsTurnAndNeighboursFollowOneAnother) {
+  const ShadingScene scene(*world_at(builtin("pair"), 0));
+  std::vector<std::uint32_t> sorted = scene.order();
+  std::sort(sorted.begin(), sorted.end());
+  for (std::uint32_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], i);
+  ASSERT_EQ(sorted.size(), scene.vertices().size());
+  for (const ShadingObject& object : scene.objects()) {
+    double in_order = 0, as_stored = 0;
+    for (std::uint32_t i = object.first; i + 1 < object.first + object.count; ++i) {
+      const std::uint32_t a = scene.order()[i], b = scene.order()[i + 1];
+      EXPECT_LT(a - object.first, object.count);
+      in_order += static_cast<double>(glm::length(scene.vertices().position[a] - scene.vertices().position[b]));
+      as_stored += static_cast<double>(object.radius);
+    }
+    if (object.moving) {
+      EXPECT_LT(in_order, 0.1 * as_stored);
+    }
+  }
 }
 
 TEST(ShadingScene, VerticesLieWhereHitsAre) {

@@ -116,6 +116,21 @@ Shot shot_with_camera(Scene scene, IVec2 size) {
   return shot_of(std::move(scene), size);
 }
 
+TEST(SquareLights, WhatIsKeptOverFramesChangesNoPicture) {
+  const auto picture = [](float exponent, BakeStore& store) {
+    Scene scene = small_scene();
+    scene.materials[0].model = PhongMaterial{Color(0.3f), Color(0.4f), exponent};
+    return take(shot_with_camera(std::move(scene), {40, 30}), quick({}), store).pixels;
+  };
+  BakeStore kept, fresh;
+  const auto first = picture(20, kept);
+  EXPECT_EQ(picture(20, kept), first);
+  const auto edited = picture(60, kept);
+  EXPECT_NE(edited, first);
+  EXPECT_EQ(edited, picture(60, fresh));
+  EXPECT_EQ(picture(20, kept), first);
+}
+
 TEST(SquareLights, AllTexelsLightAnOpenSphereExactly) {
   Scene scene;
   scene.spheres.push_back({.center = Vec3(0), .radius = 1});
