@@ -4,13 +4,14 @@
 
 #include "bench/fragments/fragment_bench.h"
 #include "bench/square_lights/square_bench.h"
+#include "bench/trace_bench.h"
 #include "bench/visibility_cache/cache_bench.h"
 
 namespace sightline::app {
 
 const std::vector<BenchSuite>& bench_suites() {
   static const std::vector<BenchSuite> table = {
-      {"trace", nullptr, {}, run_trace_bench},
+      {"trace", trace_bench_parts, {"--part", "--rounds"}, run_trace_bench},
       {"fragments",
        fragment_bench_parts,
        {"--part", "--html", "--strip", "--truth-samples", "--rounds", "--cache-dir"},

@@ -1,13 +1,10 @@
 // Embree over a structure-of-arrays batch, as short as it can be written.
 #include <cstring>
-#include <limits>
 
 #include "bench/bare_loop.h"
 
 namespace sightline {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <int N, class Packet>
 void load(Packet& p, const RayBatch& rays, std::size_t at) {

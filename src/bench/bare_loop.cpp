@@ -218,16 +218,15 @@ void OneHitBlock(const BareJob& job, const PinholeRays& plane, int bx, int by, i
   }
 }
 
-void PathBlock(const BareJob& job, const PinholeRays& plane, int bx, int by, int spp, int bounces, const BareStyle& style,
-               BareResult& result) {
+void PathBlock(const BareJob& job, const PinholeRays& plane, int bx, int by, SampleRange samples, int spp, int bounces,
+               const BareStyle& style, BareResult& result) {
   const Light light = light_of(job.light);
   RayLanes ray, shadow;
   HitLanes hit;
   PointLanes points;
   Lanes u, v, carried, visible, light_pdf, throughput, total, bsdf_pdf;
-  for (int sample = 0; sample < spp; ++sample) {
-    const std::uint32_t seed =
-        (static_cast<std::uint32_t>(by * 65536 + bx * 16) * 4096u + static_cast<std::uint32_t>(sample)) * 0x9e3779b9u;
+  for (std::uint32_t sample = samples.begin; sample < samples.end; ++sample) {
+    const std::uint32_t seed = (static_cast<std::uint32_t>(by * 65536 + bx * 16) * 4096u + sample) * 0x9e3779b9u;
     std::uint32_t dimension = 0;
     const auto numbers = [&] {
       for (int i = 0; i < kBlock; ++i) {
@@ -296,19 +295,25 @@ HWY_EXPORT(PathBlock);
 
 namespace {
 
+constexpr int kTileSide = 32;
+
+int tiles_along(int pixels) { return (pixels + kTileSide - 1) / kTileSide; }
+
 template <class Block>
 BareResult over_tiles(const BareJob& job, const Context& context, Block block) {
   const PinholeRays plane = job.view->pinhole();
-  const int tiles_x = (job.view->width() + 31) / 32, tiles_y = (job.view->height() + 31) / 32;
+  const int tiles_x = tiles_along(job.view->width());
+  const auto step = static_cast<std::size_t>(job.tile_step);
   BareResult total;
   std::mutex mutex;
   const auto start = std::chrono::steady_clock::now();
-  parallel_for(context, static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t tile = begin; tile < end; ++tile) {
+  const std::size_t tiles = (static_cast<std::size_t>(bare_tile_count(job)) + step - 1) / step;
+  parallel_for(context, tiles, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       BareResult local;
-      const int x0 = static_cast<int>(tile) % tiles_x * 32, y0 = static_cast<int>(tile) / tiles_x * 32;
-      for (int by = y0; by < std::min(y0 + 32, job.view->height()); by += 4) {
-        for (int bx = x0; bx < std::min(x0 + 32, job.view->width()); bx += 4) block(plane, bx, by, local);
+      const int tile = static_cast<int>(i * step), x0 = tile % tiles_x * kTileSide, y0 = tile / tiles_x * kTileSide;
+      for (int by = y0; by < std::min(y0 + kTileSide, job.view->height()); by += 4) {
+        for (int bx = x0; bx < std::min(x0 + kTileSide, job.view->width()); bx += 4) block(plane, bx, by, local);
       }
       const std::lock_guard lock(mutex);
       total.rays += local.rays, total.sum += local.sum;
@@ -320,15 +325,17 @@ BareResult over_tiles(const BareJob& job, const Context& context, Block block) {
 
 }  // namespace
 
+int bare_tile_count(const BareJob& job) { return tiles_along(job.view->width()) * tiles_along(job.view->height()); }
+
 BareResult bare_one_hit(const BareJob& job, int samples, const BareStyle& style, const Context& context) {
   return over_tiles(job, context, [&](const PinholeRays& plane, int bx, int by, BareResult& local) {
     HWY_DYNAMIC_DISPATCH(OneHitBlock)(job, plane, bx, by, samples, style, local);
   });
 }
 
-BareResult bare_paths(const BareJob& job, int spp, int bounces, const BareStyle& style, const Context& context) {
+BareResult bare_paths(const BareJob& job, SampleRange samples, int spp, int bounces, const BareStyle& style, const Context& context) {
   return over_tiles(job, context, [&](const PinholeRays& plane, int bx, int by, BareResult& local) {
-    HWY_DYNAMIC_DISPATCH(PathBlock)(job, plane, bx, by, spp, bounces, style, local);
+    HWY_DYNAMIC_DISPATCH(PathBlock)(job, plane, bx, by, samples, spp, bounces, style, local);
   });
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/core/context.h"
+#include "film/frame.h"
 #include "film/view.h"
 #include "scene/light.h"
 #include "trace/embree/packets.h"
@@ -23,6 +24,7 @@ struct BareJob {
   std::uint32_t light_geometry = 0;
   float albedo = 0.7f;
   float epsilon = 1e-4f;  ///< offset of secondary rays, world units
+  int tile_step = 1;      ///< only every so many tiles of 32x32 pixels
 };
 
 struct BareStyle {
@@ -37,9 +39,11 @@ struct BareResult {
 
 /// One primary ray through each pixel centre, `samples` light samples at the hit.
 BareResult bare_one_hit(const BareJob& job, int samples, const BareStyle& style, const Context& context);
-/// `spp` camera samples a pixel; at each of `bounces` + 1 hits one light sample and one cosine-weighted ray, whose next hit may be the
-/// light.
-BareResult bare_paths(const BareJob& job, int spp, int bounces, const BareStyle& style, const Context& context);
+/// `samples` of `spp` camera samples a pixel; at each of `bounces` + 1 hits one light sample and one cosine-weighted ray, whose next hit
+/// may be the light.
+BareResult bare_paths(const BareJob& job, SampleRange samples, int spp, int bounces, const BareStyle& style, const Context& context);
+/// Tiles of the whole picture.
+int bare_tile_count(const BareJob& job);
 
 /// The same rays as a Tracer gets them, to the same hits: loads, calls, stores, nothing else. One scene, no instances.
 void bare_intersect(RTCScene scene, const RayBatch& rays, HitBatch& hits, CallStyle style);

@@ -87,6 +87,7 @@ void MeasuredReflectance::limit_albedo() {
   // Transfer between the nodes of the cosine, summed over the azimuth: albedo(o) = s(o) sum_i transfer(o, i) s(i).
   constexpr int kTurns = 2 * (kNodes - 1), kPerNode = 2, kCosines = kPerNode * (kAngles - 1);
   std::vector<Color> transfer(std::size_t{kAngles} * kCosines, Color(0));
+  const auto at = [](int o, int i) { return static_cast<std::size_t>(o) * kCosines + static_cast<std::size_t>(i); };
   const auto cosine_of = [](int i) { return (static_cast<float>(i) + 0.5f) / kCosines; };
   for (int o = 0; o < kAngles; ++o) {
     const float cos_o = static_cast<float>(o) / (kAngles - 1), sin_o = std::sqrt(1 - cos_o * cos_o);
@@ -94,7 +95,7 @@ void MeasuredReflectance::limit_albedo() {
       const float cos_i = cosine_of(i), sin_i = std::sqrt(1 - cos_i * cos_i);
       Color sum(0);
       for (int t = 0; t < kTurns; ++t) sum += grid_value({sin_o * sin_i, (static_cast<float>(t) + 0.5f) / kTurns, cos_o * cos_i});
-      transfer[static_cast<std::size_t>(o * kCosines + i)] = sum * (2 * kPi * cos_i / (kTurns * kCosines));
+      transfer[at(o, i)] = sum * (2 * kPi * cos_i / (kTurns * kCosines));
     }
   }
   // Each round takes back half of what is too much in every direction, since the other direction of each pair is scaled as well.
@@ -103,7 +104,7 @@ void MeasuredReflectance::limit_albedo() {
   for (int round = 0; round <= kRounds; ++round) {
     for (int o = 0; o < kAngles; ++o) {
       Color sum(0);
-      for (int i = 0; i < kCosines; ++i) sum += transfer[static_cast<std::size_t>(o * kCosines + i)] * scale_at(cosine_of(i));
+      for (int i = 0; i < kCosines; ++i) sum += transfer[at(o, i)] * scale_at(cosine_of(i));
       directional_albedo_[static_cast<std::size_t>(o)] = sum * scale_[static_cast<std::size_t>(o)];
     }
     if (round == kRounds) break;
@@ -158,7 +159,7 @@ void MeasuredReflectance::build_tables() {
       }
       for (int c = 0; c < kColumns; ++c) cdf[c] /= static_cast<float>(in_row);
       below += in_row;
-      row_cdf_[static_cast<std::size_t>(v * kRows + r)] = static_cast<float>(below / kTable);
+      row_cdf_[static_cast<std::size_t>(v) * kRows + static_cast<std::size_t>(r)] = static_cast<float>(below / kTable);
     }
   }
 }

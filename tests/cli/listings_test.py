@@ -180,11 +180,34 @@ class Bench(ProgramTest):
         self.fails(2, "bench", "visibility-cache", "--spp", "1,x")
         for part, option in (("lookup,rivals", ("--ce", "8")), ("flicker", ("--spp", "4")), ("curves", ("--strip", "a.png"))):
             self.fails(2, "bench", "visibility-cache", "--part", part, *option, says=(option[0], "--part"))
-        self.fails(2, "bench", "trace", "--part", "curves", says="visibility-cache")
+        self.fails(2, "bench", "trace", "--ce", "8", says="visibility-cache")
         self.fails(2, "bench", "visibility-cache", "--json", "missing/a.json", says="missing")
         run = self.ok("bench", "visibility-cache", "--view", "kitchen", "--data", ".", "--json", "-")
         self.assertIn("kitchen", run.err)
         self.assertEqual(json.loads(run.out)["curves"], [])
+
+    TRACE = ("bench", "trace", "--quick", "--view", "builtin:cornell", "--size", "64x48", "--threads", 2)
+
+    def test_both_parts_of_the_trace_suite(self):
+        run = self.ok(*self.TRACE, "--json", "a.json", "--markdown", "a.md")
+        self.assertIn("bounce rays", run.err)
+        results = self.json("a.json")
+        self.assertEqual((results["suite"], results["threads"], results["quick"], results["interrupted"]), ("trace", 2, True, False))
+        view = results["views"][0]
+        self.assertEqual([row["rays"] for row in view["tracer"]], ["primary", "shadow", "bounce"])
+        self.assertEqual(len(view["pictures"]), 3)
+        for row in view["tracer"] + view["pictures"]:
+            self.assertEqual(row["rounds"], 1)
+        # A slice of the samples more or less would show here.
+        for row in view["pictures"]:
+            self.assertAlmostEqual(row["product_rays"] / row["bare_rays"], 1, delta=0.1)
+        self.assertEqual((self.folder / "a.md").read_text().count("| builtin:cornell |"), 6)
+
+    def test_one_part_of_the_trace_suite(self):
+        view = json.loads(self.ok(*self.TRACE, "--part", "rays", "--rounds", 2, "--json", "-").out)["views"][0]
+        self.assertEqual([row["rounds"] for row in view["tracer"]], [2, 2, 2])
+        self.assertEqual(view["pictures"], [])
+        self.fails(2, "bench", "trace", "--part", "picture", says="pictures")
 
     def test_all_parts_of_the_fragments_suite(self):
         run = self.ok("bench", "fragments", "--quick", "--view", "builtin:half-plane,light=area,light_size=1", "--size", "64x48", "--threads", 2, "--truth-samples", 128,
@@ -244,7 +267,7 @@ class Bench(ProgramTest):
         for part, option in (("interactive", ("--rounds", "2")), ("interactive", ("--cache-dir", "x")), ("table,curve", ("--strip", "a.png"))):
             self.fails(2, "bench", "fragments", "--part", part, *option, says=(option[0], "--part"))
         self.fails(2, "bench", "visibility-cache", "--truth-samples", "4", says=("--truth-samples", "fragments"))
-        self.fails(2, "bench", "--rounds", "4", says="fragments")
+        self.fails(2, "bench", "--cache-dir", "x", says="fragments")
         self.assertEqual(self.files(), [])
         run = self.ok("bench", "fragments", "--view", "conference", "--data", ".", "--json", "-")
         self.assertIn("conference", run.err)

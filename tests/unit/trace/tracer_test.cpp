@@ -7,6 +7,8 @@
 
 #include "base/core/error.h"
 #include "texture/texture_set.h"
+#include "trace/embree/embree_tracer.h"
+#include "trace/embree/packets.h"
 #include "trace/sphere.h"
 #include "unit/trace/trace_scenes.h"
 
@@ -53,6 +55,30 @@ TEST(Tracer, EmbreeEqualsBruteForceOnRandomTriangles) {
   std::mt19937 random(1);
   const Scene scene = scene_of(triangle_soup(random, 300, 1, 0.4f));
   expect_equal_to_brute(scene, random_rays(random, 4000, 1), 2);
+}
+
+// The class of a scene only decides how rays are handed over.
+TEST(Tracer, OcclusionIsTheSameHoweverFineTheGeometryIsSaidToBe) {
+  std::mt19937 random(8);
+  const Scene scene = scene_of(triangle_soup(random, 300, 1, 0.4f));
+  const RayBatch rays = random_rays(random, 3001, 1);
+  const Context context;
+  const TextureSet textures(scene, context);
+  const auto tracer = make_embree_tracer(scene, textures, {}, context);
+  EmbreeScenes scenes = *embree_scenes(*tracer);
+  RayCounts counts;
+  HitBatch truth;
+  make_brute_tracer(scene, textures, {}, context)->intersect(rays, truth, BatchKind::primary, counts);
+  for (const std::uint64_t triangles : {std::uint64_t{1000}, std::uint64_t{500'000}, std::uint64_t{5'000'000}}) {
+    scenes.detail = geometry_detail(triangles);
+    for (const BatchKind kind : kKinds) {
+      std::vector<std::uint8_t> occluded(padded(rays.size), 7);
+      occluded_batch(scenes, rays, occluded, occluded_style(kind, scenes, 16));
+      int different = 0;
+      for (std::size_t i = 0; i < rays.size; ++i) different += occluded[i] != (truth.hit(i) ? 1 : 0);
+      EXPECT_LE(different, 2) << triangles << " triangles, kind " << static_cast<int>(kind);
+    }
+  }
 }
 
 TEST(Tracer, HitsNameTheSameTriangleAwayFromTies) {
