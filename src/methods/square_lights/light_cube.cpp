@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "shade/lights/cube_resample.h"
+#include "shade/lights/environment_map.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -53,6 +54,18 @@ LightCube make_light_cube(const std::function<Color(const Vec3&)>& radiance, int
   LightCube cube;
   cube.size = size;
   cube.texels = resample_to_cube(radiance, size, points, context);
+  return cube;
+}
+
+LightCube light_cube_of(const Environment& environment, int size, const Context& context) {
+  LightCube cube;
+  cube.size = size;
+  const Environment resampled = environment_as_cube(environment, size, context);
+  const EnvironmentMap map(resampled.image, resampled.mapping, context);
+  const Color scale = glm::max(environment.scale, Color(0));
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) cube.texels.push_back(scale * map.texel(x, y));
+  }
   return cube;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/core/context.h"
 #include "base/math/vec.h"
+#include "scene/light.h"
 #include "shade/cube_map.h"
 
 namespace sightline::square_lights {
@@ -22,8 +23,10 @@ struct LightCube {
   Color integral() const;  ///< of radiance over the sphere
 };
 
-/// Means of `radiance(unit direction)` over texels by solid angle, from `points` x `points` of each: small bright suns count by the share
-/// of a texel that they fill.
+/// Means of an environment over texels by solid angle, in its own frame, times its scale: every pixel of its picture counts (see
+/// cube_resample.h).
+LightCube light_cube_of(const Environment& environment, int size, const Context& context);
+/// The same of any `radiance(unit direction)`, from `points` x `points` of each texel.
 LightCube make_light_cube(const std::function<Color(const Vec3&)>& radiance, int size, int points, const Context& context);
 
 }  // namespace sightline::square_lights

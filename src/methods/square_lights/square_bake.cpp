@@ -16,11 +16,8 @@ namespace sightline::square_lights {
 namespace {
 
 // Versions of what is stored; to be raised whenever the same input would give other bytes.
-constexpr std::uint32_t kLightsVersion = 2, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1,
-                        kBrdfVersion = 1;
-// Points along an edge of a texel when an environment becomes a cube map.
-constexpr int kCubePoints = 16;
-
+constexpr std::uint32_t kLightsVersion = 3, kSelfVersion = 1, kFieldVersion = 2, kMasksVersion = 1, kSourceVersion = 1, kPatchVersion = 1,
+                        kBrdfVersion = 1, kPiecesVersion = 1;
 template <class T>
 BakeHash& add_vector(BakeHash& hash, const std::vector<T>& values) {
   return hash.add(std::span<const T>(values));
@@ -125,20 +122,53 @@ LightChoice parse_lights(const std::string& text) {
   return {LightChoice::Kind::count, count};
 }
 
-std::uint64_t square_bake_bytes(const ShadingScene& scene, const SquareLightsSettings& settings) {
-  std::uint64_t bytes = masks_bytes(scene, settings);
-  std::size_t fields = 0;
-  for (const ShadingObject& object : scene.objects()) {
-    if (!object.deformable && !needs_masks(settings)) bytes += self_visibility_bytes(object.count);
-    fields += object.moving ? 1 : scene.any_moving() ? object.members.size() : 0;
+StillPieces still_pieces(const Scene& scene, const ShadingScene& shading) {
+  StillPieces result;
+  if (!shading.any_moving()) return result;
+  for (const ShadingObject& object : shading.objects()) {
+    if (object.moving || object.deformable) continue;
+    for (std::size_t m = 0; m < object.members.size(); ++m) {
+      StillPieces::Piece& piece = result.pieces.emplace_back();
+      piece.object.name = "static";
+      piece.object.members = {object.members[m]}, piece.object.object_from_member = {object.object_from_member[m]};
+      const std::uint32_t index = object.members[m];
+      if (index & kSphereBit) {
+        const Sphere& sphere = scene.spheres[index & ~kSphereBit];
+        piece.object.center = sphere.center, piece.object.radius = sphere.radius;
+        continue;
+      }
+      const Mesh& mesh = scene.meshes[scene.instances[index].mesh.index];
+      Bounds bounds;
+      std::vector<Vec3> points;
+      float area = 0;
+      for (const Vec3& p : mesh.positions) points.push_back(transform_point(object.object_from_member[m], p)), bounds.add(points.back());
+      for (const UVec3& t : mesh.triangles) area += 0.5f * glm::length(glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]));
+      piece.plane = PlanarOccluder::fit(points, area);
+      if (piece.plane) continue;
+      piece.object.center = 0.5f * (bounds.lower + bounds.upper);
+      for (const Vec3& p : points) piece.object.radius = std::max(piece.object.radius, glm::length(p - piece.object.center) * (1 + 1e-5f));
+    }
   }
-  if (!scene.any_moving()) fields = 0;
-  return bytes + fields * occluder_field_bytes();
+  return result;
+}
+
+std::uint64_t square_bake_bytes(const Scene& scene, const ShadingScene& shading, const StillPieces& pieces,
+                                const SquareLightsSettings& settings) {
+  if (scene.environment && needs_masks(settings)) return masks_bytes(shading, settings);
+  std::uint64_t bytes = 0;
+  for (const ShadingObject& object : shading.objects()) {
+    if (!object.deformable && (scene.environment || object.moving)) bytes += self_visibility_bytes(object.count);
+    if (object.moving && !object.deformable) bytes += occluder_field_bytes();
+  }
+  for (const StillPieces::Piece& piece : pieces.pieces) bytes += piece.plane ? 0 : occluder_field_bytes();
+  return bytes;
 }
 
 SquareBake::SquareBake(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context)
     : scene_(world, &store.recent()) {
-  const std::uint64_t needed = square_bake_bytes(scene_, settings);
+  pieces_ = store.recent().get<StillPieces>({"square-lights.still-pieces", kPiecesVersion, scene_.key()},
+                                            [&] { return still_pieces(world.scene(), scene_); });
+  const std::uint64_t needed = square_bake_bytes(world.scene(), scene_, *pieces_, settings);
   if (context.memory_budget_bytes > 0 && needed + current_resident_bytes() > context.memory_budget_bytes)
     throw resource_error(fmt::format("square-lights: the tables of {} vertices take {:.1f} GB, more than the memory limit leaves",
                                      scene_.vertices().size(), static_cast<double>(needed) * 1e-9))
@@ -168,8 +198,7 @@ void SquareBake::make_lights(const World& world, const SquareLightsSettings& set
   hash.add(settings.cube).add(settings.merge).add(settings.area_penalty);
   const BakeId id{"square-lights.lights", kLightsVersion, hash.key()};
   const std::shared_ptr<const BakeView> view = store.get(id, context, [&](const auto& keep) {
-    const LightCube cube = make_light_cube([&](const Vec3& d) { return world.lights().environment(world_from_environment_ * d); },
-                                           settings.cube, kCubePoints, context);
+    const LightCube cube = light_cube_of(environment, settings.cube, context);
     MergeOptions options;
     // The settings' names stand in the same order.
     options.criterion = static_cast<MergeOptions::Criterion>(settings.merge);
@@ -227,6 +256,7 @@ void SquareBake::make_tables(const World& world, const SquareLightsSettings& set
       options.vectors = settings.vectors, options.seed = context.seed;
       keep(sections_of(CompressedTables::cluster(all->array<std::int8_t>("tables"), object.count, options, context)));
     });
+    store.close(raw_id);
     tables_[o].compressed = compressed_from(*tables_[o].held, settings.vectors);
     bytes_ += tables_[o].compressed->bytes();
   }
@@ -242,29 +272,11 @@ void SquareBake::make_occluders(const World& world, const SquareLightsSettings& 
       continue;
     }
     // What stands still hides light from what moves, piece by piece: flat convex pieces exactly, others by fields of their own.
-    for (std::size_t m = 0; m < object.members.size(); ++m) {
-      ShadingObject piece;
-      piece.members = {object.members[m]}, piece.object_from_member = {object.object_from_member[m]};
-      Bounds bounds;
-      std::vector<Vec3> points;
-      float area = 0;
-      const std::uint32_t index = object.members[m];
-      if (index & kSphereBit) {
-        const Sphere& sphere = world.scene().spheres[index & ~kSphereBit];
-        piece.center = sphere.center, piece.radius = sphere.radius;
-      } else {
-        const Mesh& mesh = world.scene().meshes[world.scene().instances[index].mesh.index];
-        for (const Vec3& p : mesh.positions) points.push_back(transform_point(object.object_from_member[m], p)), bounds.add(points.back());
-        for (const UVec3& t : mesh.triangles) area += 0.5f * glm::length(glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]));
-        if (std::optional<PlanarOccluder> plane = PlanarOccluder::fit(points, area)) {
-          planes_.push_back(std::move(*plane));
-          continue;
-        }
-        piece.center = 0.5f * (bounds.lower + bounds.upper);
-        for (const Vec3& p : points) piece.radius = std::max(piece.radius, glm::length(p - piece.center) * (1 + 1e-5f));
-      }
-      piece.name = "static";
-      add_occluder(world, piece, Mat4(1), o, settings, store, context);
+    for (const StillPieces::Piece& piece : pieces_->pieces) {
+      if (piece.plane)
+        planes_.push_back(*piece.plane);
+      else
+        add_occluder(world, piece.object, Mat4(1), o, settings, store, context);
     }
   }
 }
@@ -276,8 +288,9 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
   const std::array<float, 4> sphere = sphere_of(object);
   hash.add(std::span<const float>(sphere)).add(settings.occluder_rays).add(settings.zoom);
   const OccluderFieldOptions options{settings.occluder_rays, settings.zoom};
+  const BakeId raw_id{"square-lights.occluder-field", kFieldVersion, hash.key()};
   const auto raw = [&] {
-    return store.get({"square-lights.occluder-field", kFieldVersion, hash.key()}, context, [&](const auto& keep) {
+    return store.get(raw_id, context, [&](const auto& keep) {
       announce(context, fmt::format("occluder field of '{}'", object.name), occluder_field_bytes());
       const Scene alone = object_scene(world.scene(), object);
       const std::unique_ptr<Tracer> tracer = make_embree_tracer(alone, world.textures(), {}, context);
@@ -309,6 +322,7 @@ void SquareBake::add_occluder(const World& world, const ShadingObject& object, c
       sections.push_back({"hidden", all->section("hidden")});
       keep(sections);
     });
+    store.close(raw_id);
     occluder.compressed = compressed_from(*occluder.held, settings.occluder_vectors);
     bytes_ += occluder.compressed->bytes();
     // Deviation: look-ups want eight tables a point, far more than a vertex's one; they are expanded once, so that compression saves disk

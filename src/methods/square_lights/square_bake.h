@@ -55,6 +55,18 @@ struct Occluder {
   AlignedVector<std::int8_t> expanded;  ///< the field's bytes where they are stored compressed
 };
 
+/// What stands still where something moves: each member an object of its own, in world space, flat convex ones as polygons.
+struct StillPieces {
+  struct Piece {
+    ShadingObject object;  ///< without vertices
+    std::optional<PlanarOccluder> plane;
+  };
+  std::vector<Piece> pieces;
+  std::uint64_t bytes() const { return pieces.size() * sizeof(Piece); }
+};
+/// None where nothing moves.
+StillPieces still_pieces(const Scene& scene, const ShadingScene& shading);
+
 /// A local light in world space, and its table where one is wanted.
 struct Source {
   LocalLight light;
@@ -107,6 +119,7 @@ class SquareBake final : public Bake {
   Mat3 world_from_environment_{1};
   std::vector<VertexTables> tables_;
   std::vector<Occluder> occluders_;
+  std::shared_ptr<const StillPieces> pieces_;
   std::vector<PlanarOccluder> planes_;
   std::vector<std::shared_ptr<const MaterialTables>> materials_;  ///< by material, the default one last
   std::vector<Bsdf> bsdfs_;
@@ -120,7 +133,8 @@ class SquareBake final : public Bake {
   std::uint64_t bytes_ = 0;
 };
 
-/// Bytes that a bake of this scene takes at most, for the memory budget.
-std::uint64_t square_bake_bytes(const ShadingScene& scene, const SquareLightsSettings& settings);
+/// Bytes that the tables of a scene take, for the memory budget.
+std::uint64_t square_bake_bytes(const Scene& scene, const ShadingScene& shading, const StillPieces& pieces,
+                                const SquareLightsSettings& settings);
 
 }  // namespace sightline::square_lights

@@ -7,9 +7,11 @@
 #include <numbers>
 
 #include "base/core/error.h"
+#include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
 #include "scene/materialize.h"
 #include "shade/cube_map.h"
+#include "shade/lights/environment_lanes.h"
 #include "shade/lights/environment_map.h"
 
 namespace sightline {
@@ -17,11 +19,19 @@ namespace sightline {
 // Points in all, so that large pictures take a second or two and not a minute.
 constexpr double kMostPoints = 6.4e7;
 
-std::vector<Color> resample_to_cube(const std::function<Color(const Vec3&)>& radiance, int size, int points, const Context& context) {
-  const auto n = static_cast<std::size_t>(size);
+namespace {
+
+/// Radiance from the first `count` of these directions.
+using RadianceBatch = std::function<void(const Vec3Batch& direction, std::size_t count, Vec3Batch& radiance)>;
+
+std::vector<Color> resample_batches(const RadianceBatch& radiance, int size, int points, const Context& context) {
+  const auto n = static_cast<std::size_t>(size), row_points = static_cast<std::size_t>(points);
   std::vector<Color> texels(kCubeFaces * n * n);
   const int fine = size * points;
   parallel_for(context, kCubeFaces * n, 4, [&](std::size_t begin, std::size_t end) {
+    Vec3Batch direction, color;
+    direction.resize(row_points), color.resize(row_points);
+    std::vector<double> weight(row_points);
     for (std::size_t row = begin; row < end; ++row) {
       const int face = static_cast<int>(row / n), y = static_cast<int>(row % n);
       for (int x = 0; x < size; ++x) {
@@ -32,9 +42,13 @@ std::vector<Color> resample_to_cube(const std::function<Color(const Vec3&)>& rad
             const Vec3 d = cube_direction(face, cube_coordinate(x * points + i, fine), cube_coordinate(y * points + j, fine));
             // Solid angles of equal parts of a face fall with the cube of the distance to it.
             const float squared = length_squared(d), length = std::sqrt(squared);
-            const double weight = 1 / (static_cast<double>(squared) * static_cast<double>(length));
-            sum += weight * glm::dvec3(radiance(d / length));
-            weights += weight;
+            weight[static_cast<std::size_t>(i)] = 1 / (static_cast<double>(squared) * static_cast<double>(length));
+            store(direction, static_cast<std::size_t>(i), d / length);
+          }
+          radiance(direction, row_points, color);
+          for (std::size_t i = 0; i < row_points; ++i) {
+            sum += weight[i] * glm::dvec3(load(color, i));
+            weights += weight[i];
           }
         }
         texels[row * n + static_cast<std::size_t>(x)] = Color(sum / weights);
@@ -42,6 +56,15 @@ std::vector<Color> resample_to_cube(const std::function<Color(const Vec3&)>& rad
     }
   });
   return texels;
+}
+
+}  // namespace
+
+std::vector<Color> resample_to_cube(const std::function<Color(const Vec3&)>& radiance, int size, int points, const Context& context) {
+  const auto one_by_one = [&](const Vec3Batch& direction, std::size_t count, Vec3Batch& color) {
+    for (std::size_t i = 0; i < count; ++i) store(color, i, radiance(load(direction, i)));
+  };
+  return resample_batches(one_by_one, size, points, context);
 }
 
 int cube_points(const Environment& environment, int size) {
@@ -107,7 +130,12 @@ Environment environment_as_cube(const Environment& environment, int size, const 
     if (environment.mapping == EnvironmentMapping::cube) {
       texels = resample_cube(map, size, context);
     } else {
-      texels = resample_to_cube([&](const Vec3& d) { return map.radiance(d); }, size, cube_points(environment, size), context);
+      const EnvironmentPicture picture{map.values(), map.width(), map.height(), map.channels(), map.mapping(), Mat3(1), Color(1)};
+      const int points = cube_points(environment, size);
+      texels = picture.has_lanes() ? resample_batches([&](const Vec3Batch& d, std::size_t count,
+                                                          Vec3Batch& color) { environment_radiance(picture, d, count, color); },
+                                                      size, points, context)
+                                   : resample_to_cube([&](const Vec3& d) { return map.radiance(d); }, size, points, context);
     }
   }
   Image::Floats values;

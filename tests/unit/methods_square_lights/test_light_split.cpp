@@ -38,6 +38,24 @@ Color total(std::span<const SquareLight> lights) {
   return Color(sum);
 }
 
+TEST(LightCube, ASunOfOnePixelIsNotLost) {
+  // One pixel, a thousandth of a texel, wherever in the texels it falls.
+  constexpr int width = 512, height = 256;
+  for (const IVec2 sun : {IVec2(100, 75), IVec2(311, 120), IVec2(7, 150)}) {
+    Image image{width, height, 3, Image::Floats{}};
+    auto& values = std::get<Image::Floats>(image.data);
+    values.assign(image.pixel_count() * 3, 0.f);
+    std::fill_n(values.begin() + (std::ptrdiff_t{sun.y} * width + sun.x) * 3, 3, 1e5f);
+    Environment environment;
+    environment.image = std::make_shared<const Image>(std::move(image));
+    environment.scale = Color(1, 2, 0.5f);
+    const Color sum = light_cube_of(environment, 8, Context{}).integral();
+    const auto row = [](int y) { return std::cos(kPi * static_cast<float>(y) / height); };
+    const float angle = 2 * kPi / width * (row(sun.y) - row(sun.y + 1));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / (1e5f * angle * environment.scale[c]), 1, 0.01f) << sun.x;
+  }
+}
+
 TEST(LightCube, CentersLieInTheirTexels) {
   const LightCube cube = sky_cube(8);
   ASSERT_EQ(cube.count(), 6u * 64);
