@@ -64,6 +64,9 @@ struct QueryBatch {
   QueryEnds eye, light;
   AlignedVector<std::uint8_t> semantic;  ///< QuerySemantic of each light end
   AlignedVector<std::uint32_t> eye_of, light_of;
+  /// What each query would carry if nothing were in the way, over the mean of those asked together: how much a wrong answer matters.
+  /// Empty: not known, all alike.
+  AlignedVector<float> importance;
   std::size_t size = 0;
   BatchKind kind = BatchKind::shadow_diffuse;
   QuerySplit split = QuerySplit::eye;

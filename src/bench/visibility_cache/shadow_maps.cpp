@@ -18,7 +18,7 @@ Json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, 
     const std::vector<Shot> shots = shoot_by_turns(view,
                                                    {{.visibility = "exact", .spp = spp},
                                                     {.settings = {fmt::format("ce={}", kEdge)}, .spp = spp},
-                                                    {.settings = {fmt::format("ce={}", kEdge), "counters=3", "depth=6"}, .spp = spp}},
+                                                    {.settings = {fmt::format("ce={}", kEdge), "counters=3"}, .spp = spp}},
                                                    options.quick ? 1 : 0, context);
     const Shot &exact = shots[0], &cached = shots[1], &careful = shots[2];
     const std::vector<std::uint8_t> mask = surface_mask(view, spp, {}, context);
@@ -35,7 +35,7 @@ Json cache_shadow_maps(const CacheView& view, const CacheBenchOptions& options, 
       return row;
     };
     Json rows = {row_of("exact", exact), row_of(fmt::format("cached, C_E = {}", kEdge), cached),
-                 row_of(fmt::format("cached, C_E = {}, counters=3, depth=6", kEdge), careful)};
+                 row_of(fmt::format("cached, C_E = {}, counters=3", kEdge), careful)};
     for (const int size : sizes) {
       const ShotRequest request{.visibility = "shadow-map", .settings = {fmt::format("resolution={}", size)}, .spp = spp};
       rows.push_back(row_of(fmt::format("shadow maps, {0}x{0}", size), shoot(view, request, context)));

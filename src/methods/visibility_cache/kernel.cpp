@@ -13,7 +13,7 @@ namespace {
 
 // Light samples worked off at a time: they, their ends and their answers stay in the L2 cache beside the visibility's table. Without a
 // table there is room for more, and the more eye points share a light, the better its rays trace together.
-constexpr std::size_t kBatch = 4096, kExactBatch = 16384;
+constexpr std::size_t kShadowBatch = 4096, kExactBatch = 16384;
 // Directions of the environment from which each of an eye point's samples is chosen. To draw one anew costs several reads of tables far
 // larger than the L2 cache; a tile's set stays in it, and its ends are shared by many queries.
 constexpr std::uint32_t kSkyChoices = 64;
@@ -103,7 +103,7 @@ void EyeKernel::put_in_order(const Tile& tile) {
 
 template <class Shade>
 void EyeKernel::in_chunks(std::size_t per_eye, Shade shade) {
-  const std::size_t chunk = std::clamp<std::size_t>((spatial_order_ ? kExactBatch : kBatch) / per_eye, 1, 1024);
+  const std::size_t chunk = std::clamp<std::size_t>((spatial_order_ ? kExactBatch : kShadowBatch) / per_eye, 1, 1024);
   contributions_.resize(chunk * per_eye);
   weights_.resize(padded(chunk * per_eye) + kLanes);
   for (auto* numbers : {&u0_, &u1_, &u2_}) numbers->resize(padded(chunk * per_eye));
@@ -168,6 +168,7 @@ void EyeKernel::shade_punctual(EyeRange chunk, PassStatistics& statistics) {
     queries_.semantic[j] = byte(infinite ? QuerySemantic::direction : QuerySemantic::point);
   }
   queries_.kind = BatchKind::shadow;
+  queries_.importance.clear();  // one light, one cell: a light that outshines others at one point does so at its neighbours
   ask(direct_, true, statistics);
 }
 
@@ -196,6 +197,7 @@ void EyeKernel::shade_area(EyeRange chunk, const EyePass& pass, PassStatistics& 
   }
   queries_.kind = BatchKind::shadow;
   queries_.surface_ends = SurfaceEnds::area_light;
+  compute_importance();
   ask(direct_, false, statistics);
 }
 
@@ -261,6 +263,7 @@ void EyeKernel::shade_environment(EyeRange chunk, const EyePass& pass, PassStati
   std::fill_n(queries_.semantic.data(), queries_.light.size, byte(QuerySemantic::solid_angle));
   std::iota(queries_.light.id.data(), queries_.light.id.data() + queries_.light.size, static_cast<std::uint32_t>(chunk.first));
   queries_.kind = BatchKind::shadow_diffuse;
+  compute_importance();
   ask(direct_, false, statistics);
 }
 
@@ -300,6 +303,7 @@ void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistic
   std::fill_n(queries_.semantic.data(), lights.size, byte(QuerySemantic::surface));
   queries_.kind = BatchKind::shadow_diffuse;
   queries_.surface_ends = SurfaceEnds::virtual_light;
+  compute_importance();
   ask(indirect_, true, statistics);
 }
 
@@ -323,6 +327,26 @@ void EyeKernel::ask(Vec3Batch& radiance, bool shared_lights, PassStatistics& sta
     add(radiance, chunk_slot_[k], weighted_sum(contributions_, weights_.data(), begin, end));
     begin = end;
   }
+}
+
+// What each query carries, over the mean of the chunk: samples in a narrow lobe, or near a small light, are most of their pixel.
+void EyeKernel::compute_importance() {
+  queries_.importance.clear();
+  if (spatial_order_) return;
+  const std::size_t count = contributions_.size;
+  const Vec3Batch& color = contributions_.color;
+  queries_.importance.resize(padded(count));
+  float* const importance = queries_.importance.data();
+  double total = 0;
+  for (std::size_t begin = 0; begin < count; begin += 256) {
+    const std::size_t end = std::min(begin + 256, count);
+    for (std::size_t i = begin; i < end; ++i) importance[i] = color.x[i] + color.y[i] + color.z[i];
+    float sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += importance[i];
+    total += static_cast<double>(sum);
+  }
+  const auto scale = static_cast<float>(static_cast<double>(count) / total);
+  for (std::size_t i = 0; i < count; ++i) importance[i] *= scale;
 }
 
 // Where every query is a ray and lights are shared by many eye points, rays to one light trace fastest together.

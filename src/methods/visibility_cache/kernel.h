@@ -59,6 +59,7 @@ class EyeKernel {
   void draw_numbers(EyeRange chunk, std::size_t per_eye, std::uint32_t first_pair);
   void set_virtual_ends(const VirtualPointLights& lights);
   void ask(Vec3Batch& radiance, bool shared_lights, PassStatistics& statistics);
+  void compute_importance();
   void ask_by_light(PassStatistics& statistics);
   void write(Frame& frame);
 

@@ -127,14 +127,14 @@ struct WordKeys {
 
 /// What a slot says of a key.
 struct AnswerV {
-  MU same_key, known, mixed;
+  MU same_key, mixed;
   VU visible;  ///< 0 or 1
+  VU rays;
 };
 
 template <bool kCounters>
 struct Format {
   DU d;
-  VU almost;  ///< one ray less than makes a cell trusted
   HWY_INLINE VU tag(VU digest) const {
     constexpr std::uint32_t kMask = kCounters ? 63 : 1;
     const VU kept = hn::And(digest, hn::Set(d, ~kMask));
@@ -143,15 +143,12 @@ struct Format {
   HWY_INLINE AnswerV read(VU slot, VU tag_value) const {
     const VU rest = hn::Xor(slot, tag_value);
     if constexpr (!kCounters) {
-      const MU same = hn::Lt(rest, hn::Set(d, 2u));
-      return {same, same, hn::Ne(rest, rest), rest};
+      return {hn::Lt(rest, hn::Set(d, 2u)), hn::Ne(rest, rest), rest, rest};
     } else {
       const VU seven = hn::Set(d, 7u), zero = hn::Zero(d);
       const VU seen = hn::And(hn::ShiftRight<3>(rest), seven), hidden = hn::And(rest, seven);
       const MU mixed = hn::And(hn::Ne(seen, zero), hn::Ne(hidden, zero));
-      const MU enough = hn::Or(mixed, hn::Lt(almost, hn::Add(seen, hidden)));
-      const MU same = hn::Lt(rest, hn::Set(d, 64u));
-      return {same, hn::And(same, enough), mixed, hn::IfThenElse(hn::Lt(seen, hidden), zero, hn::Set(d, 1u))};
+      return {hn::Lt(rest, hn::Set(d, 64u)), mixed, hn::IfThenElse(hn::Lt(seen, hidden), zero, hn::Set(d, 1u)), hn::Add(seen, hidden)};
     }
   }
   /// Lanes where a neighbour holds a ray that answered otherwise.
@@ -172,7 +169,8 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
   const DF df;
   const std::size_t lanes = hn::Lanes(d);
   const VU iota = hn::Iota(d, 0);  // once: it is made in memory
-  const Format<kCounters> format{d, hn::Set(d, q.rays_a_cell - 1)};
+  const Format<kCounters> format{d};
+  const VU rays_a_cell = hn::Set(d, q.rays_a_cell);
   std::size_t misses = 0, refines = 0, exacts = 0;
   std::uint64_t asked = 0, answered = 0, lookups = 0, rejected = 0;
   for (std::size_t i = 0; i < q.count; i += lanes) {
@@ -183,14 +181,19 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
     const Picker eye(d, hn::IfThenElseZero(valid, hn::LoadU(d, q.eye + i)), whole, iota);
     const VU id = q.id ? hn::LoadU(d, q.id + i) : hn::Add(iota, hn::Set(d, q.first + static_cast<std::uint32_t>(i)));
     const Keys keys(d, q, eye, light);
-    const MU unknown = hn::And(valid, keys.unknown());
-    const MU ask = hn::AndNot(unknown, valid);
-
+    MU exact = hn::And(valid, keys.unknown());
+    if (q.importance != nullptr) {
+      const auto importance = q.id ? hn::GatherIndex(df, q.importance, hn::BitCast(DI(), hn::IfThenElseZero(valid, id)))
+                                   : hn::LoadU(df, q.importance + q.first + i);
+      const MU above = hn::RebindMask(d, hn::Gt(importance, hn::Set(df, q.most_important)));
+      exact = hn::Or(exact, hn::And(valid, above));
+    }
+    const MU ask = hn::AndNot(exact, valid);
     const VU tag = format.tag(keys.own.digest);
     const VU slot = gather(d, q.table, keys.own.index);
     const AnswerV answer = format.read(slot, tag);
-    const MU hit = hn::And(ask, answer.known);
-    const MU miss = hn::AndNot(answer.known, ask);
+    MU hit = hn::And(ask, answer.same_key);
+    MU miss = hn::AndNot(answer.same_key, ask);
     MU refine = hn::AndNot(hit, hit);
     std::uint64_t neighbours = 0;
     if (q.neighbours != CacheRefinement::none && !hn::AllFalse(d, hit)) {
@@ -208,6 +211,13 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
         keys.four(take);
       }
       refine = hn::And(refine, hit);
+      if constexpr (kCounters) {
+        // Nothing contradicts the cell, but too few rays speak for it.
+        lookups += hn::CountTrue(d, hit) * neighbours;
+        const MU unsure = hn::AndNot(refine, hn::And(hit, hn::Lt(answer.rays, rays_a_cell)));
+        miss = hn::Or(miss, unsure), hit = hn::AndNot(unsure, hit);
+        neighbours = 0;
+      }
     } else if constexpr (kCounters) {
       if (!q.last_level) refine = hn::And(answer.mixed, hit);
     }
@@ -229,7 +239,7 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
         const std::size_t count = hn::CompressStore(id, refine, d, out.refine_id.data() + refines);
         refines += count, answered -= count;
       }
-      if (!hn::AllFalse(d, unknown)) exacts += hn::CompressStore(id, unknown, d, out.exact_id.data() + exacts);
+      if (!hn::AllFalse(d, exact)) exacts += hn::CompressStore(id, exact, d, out.exact_id.data() + exacts);
     }
     if (!q.id) {
       hn::StoreU(weight, df, weights + q.first + i);
@@ -248,7 +258,7 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
 
 template <class Keys>
 void look_up_format(const LookUp& q, float* weights, LookUpResult& result) {
-  if (q.rays_a_cell > 0)
+  if (q.counters)
     look_up<Keys, true>(q, weights, result);
   else
     look_up<Keys, false>(q, weights, result);

@@ -26,12 +26,15 @@ struct LookUp {
   CacheHash hash = CacheHash::separable;
   CacheRefinement neighbours = CacheRefinement::none;  ///< none also on the last level
   bool last_level = true;                              ///< mixed cells are answered by their majority
-  std::uint32_t rays_a_cell = 0;                       ///< counters: rays until a cell is trusted; 0: one-bit slots
+  const float* importance = nullptr;                   ///< by query; null: all alike
+  float most_important = 0;                            ///< queries above are not cached
+  bool counters = false;                               ///< slots count rays by outcome (SlotFormat)
+  std::uint32_t rays_a_cell = 1;                       ///< counters: until a cell that nothing contradicts is trusted
 };
 
 /// Queries by what is to be done next. Answered ones are in the weights.
 struct LookUpResult {
-  AlignedVector<std::uint32_t> miss_id, miss_index, miss_tag;  ///< nothing known
+  AlignedVector<std::uint32_t> miss_id, miss_index, miss_tag;  ///< not enough known
   AlignedVector<std::uint32_t> refine_id;                      ///< neighbours disagree
   AlignedVector<std::uint32_t> exact_id;                       ///< cannot be cached
   std::size_t misses = 0, refines = 0, exacts = 0;

@@ -34,6 +34,7 @@ struct CachedVisibilitySettings {
   float residual_edge = 4;
   int counters = 0;
   int light_refine = 0;
+  float importance = 6;
 
   /// C_E of one class of light ends.
   float ce_of(QuerySemantic semantic, SurfaceEnds surface) const {
@@ -72,7 +73,7 @@ struct CachedVisibilitySettings {
           {.help = "neighbours that must agree, else the cell is refined; connections of paths are never refined",
            .choices = {"none", "4", "64"}});
     visit("depth", &S::depth,
-          {.help = "levels of refinement; 0 = until cells are two eye paths wide", .minimum = 0, .maximum = 16, .symbol = "C_MSR"});
+          {.help = "levels of refinement; 0 = until cells are about one eye path wide", .minimum = 0, .maximum = 16, .symbol = "C_MSR"});
     visit("hash", &S::hash,
           {.help = "separable: parts of both ends, mixed once a query; the others: the paper's two recurrences",
            .choices = {"separable", "recurrence", "mix64"}});
@@ -97,9 +98,14 @@ struct CachedVisibilitySettings {
           {.help = "probability of a ray that corrects a cached answer: unbiased, not binary; 0 = off", .minimum = 0, .maximum = 1});
     visit("residual_edge", &S::residual_edge, {.help = "times more likely where neighbours disagreed", .minimum = 1, .maximum = 1000});
     visit("counters", &S::counters,
-          {.help = "rays a cell takes before it is trusted, counted by outcome: mixed cells are refined; 0 = one, not counted",
+          {.help = "rays that a cell takes before it is trusted where no neighbour contradicts it, counted by outcome: mixed cells are "
+                   "refined; 0 = one, not counted",
            .minimum = 0,
            .maximum = 7});
+    visit("importance", &S::importance,
+          {.help = "queries that would carry more than so many times the mean of those asked with them are traced; 0 = none",
+           .minimum = 0,
+           .maximum = 1e6});
     visit("light_refine", &S::light_refine,
           {.help = "levels of refinement at the light once cells at the eye are smallest", .minimum = 0, .maximum = 4});
   }

@@ -73,7 +73,7 @@ void CachedWave::look_up_range(Slot& own, Scratch& scratch, std::size_t group, L
     LookUpResult& result = scratch.result;
     look_up_lanes(look_up, own.weights.data(), result);
 
-    if (level == 0) counts.queries += result.asked + result.exacts + result.passed_on;
+    if (level == 0) counts.queries += result.asked + result.exacts;
     counts.lookups += result.lookups, counts.rejected += result.rejected, counts.cached += result.answered;
     counts.answered_at_depth[static_cast<std::size_t>(level)] += result.answered;
     for (std::size_t k = 0; k < result.misses; ++k)

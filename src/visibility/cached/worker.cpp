@@ -76,7 +76,7 @@ void CachedWorker::answer(const Batch& batch, std::size_t group, Range range) {
   for (int level = 0; level < levels && range.count > 0; ++level) {
     look_up_lanes(look_up_of(group, level, range), batch.weights.data(), result_);
     // A query is counted where it begins.
-    if (level == 0) counts.queries += result_.asked + result_.exacts + result_.passed_on;
+    if (level == 0) counts.queries += result_.asked + result_.exacts;
     counts.lookups += result_.lookups, counts.rejected += result_.rejected;
     counts.cached += result_.answered, counts.answered_at_depth[static_cast<std::size_t>(level)] += result_.answered;
     if (core_->settings.residual > 0 && level == 0) {

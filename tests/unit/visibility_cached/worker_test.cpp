@@ -155,6 +155,45 @@ TEST(CachedWorker, EndsOfUnknownAreaAreTraced) {
   EXPECT_GE(cached.counts.traced, unknown);
 }
 
+TEST(CachedWorker, ImportantQueriesAreTraced) {
+  const auto world = worker_world();
+  for (const QuerySplit split : {QuerySplit::eye, QuerySplit::symmetric}) {
+    QueryBatch batch = floor_batch(32, QuerySemantic::surface);
+    batch.split = split;
+    const Cache cache(world, {"ce=32", "importance=4"});
+    const Answers exact = Cache(world, {}, "exact").ask(batch), alike = cache.ask(batch);
+    batch.importance.resize(padded(batch.size), 1);
+    EXPECT_EQ(cache.ask(batch).weights, alike.weights);
+    std::size_t important = 0, wrong = 0;
+    for (std::size_t i = 0; i < batch.size; i += 5) {
+      batch.importance[i] = 4.5f, ++important;
+      wrong += alike.weights[i] != exact.weights[i];
+    }
+    EXPECT_GT(wrong, 0u);  // there is something to gain
+    const Answers answers = cache.ask(batch);
+    for (std::size_t i = 0; i < batch.size; i += 5) ASSERT_EQ(answers.weights[i], exact.weights[i]);
+    EXPECT_GE(answers.counts.traced, important);
+    EXPECT_LT(answers.counts.traced, important + alike.counts.traced + 1);
+    EXPECT_EQ(answers.counts.queries, batch.size);
+    EXPECT_EQ(Cache(world, {"ce=32", "importance=0"}).ask(batch).counts.traced, alike.counts.traced);
+  }
+}
+
+TEST(CachedWorker, CountersFindMixedCellsByRays) {
+  const auto world = worker_world();
+  const QueryBatch batch = floor_batch(64, QuerySemantic::surface);
+  const Answers exact = Cache(world, {}, "exact").ask(batch);
+  const Answers plain = Cache(world, {"ce=8", "counters=0"}).ask(batch);
+  EXPECT_EQ(Cache(world, {"ce=8", "counters=1"}).ask(batch).counts.queries, plain.counts.queries);
+  Answers last = plain;
+  for (const char* counters : {"counters=2", "counters=5"}) {
+    Answers counted = Cache(world, {"ce=8", counters}).ask(batch);
+    EXPECT_GT(counted.counts.traced, last.counts.traced);
+    EXPECT_LT(differences(exact.weights, counted.weights), differences(exact.weights, last.weights));
+    last = std::move(counted);
+  }
+}
+
 TEST(CachedWorker, ScopesKnowNothingOfEachOther) {
   const auto world = worker_world();
   const QueryBatch batch = floor_batch(32, QuerySemantic::surface), other = floor_batch(7, QuerySemantic::point);
@@ -243,8 +282,8 @@ TEST(CachedWorker, LightRefinementComesAfterTheEyes) {
   const Answers exact = Cache(world, {}, "exact").ask(batch);
   const Answers plain = Cache(world, {"ce=4"}).ask(batch), finer = Cache(world, {"ce=4", "light_refine=2"}).ask(batch);
   EXPECT_LT(differences(exact.weights, finer.weights), differences(exact.weights, plain.weights));
-  EXPECT_EQ(plain.counts.answered_at_depth[2], 0u);
-  EXPECT_GT(finer.counts.answered_at_depth[3], 0u);
+  EXPECT_EQ(plain.counts.answered_at_depth[3], 0u);
+  EXPECT_GT(finer.counts.answered_at_depth[4], 0u);
 }
 
 TEST(CachedWorker, EmptySceneIsLit) {
