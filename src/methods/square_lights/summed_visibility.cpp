@@ -9,10 +9,10 @@ namespace sightline::square_lights {
 namespace {
 
 constexpr int kTableCorners = kTableSize + 1;
-using Corners = std::array<float, std::size_t{kTableCorners} * kTableCorners>;
+using CornerSums = std::array<float, std::size_t{kTableCorners} * kTableCorners>;
 
 /// Integrals over all cells left of and above each corner, in cells.
-void sum_up(TableView table, Corners& corners) {
+void sum_up(TableView table, CornerSums& corners) {
   corners.fill(0);
   constexpr float cell = 2.f / kTableSize;
   for (int y = 0; y < kTableSize; ++y) {
@@ -26,7 +26,7 @@ void sum_up(TableView table, Corners& corners) {
   }
 }
 
-float corner_at(const Corners& corners, float x, float y) {
+float corner_at(const CornerSums& corners, float x, float y) {
   const float gx = std::clamp((x + 1) * 0.5f * kTableSize, 0.f, float{kTableSize}),
               gy = std::clamp((y + 1) * 0.5f * kTableSize, 0.f, float{kTableSize});
   const int ix = std::min(static_cast<int>(gx), kTableSize - 1), iy = std::min(static_cast<int>(gy), kTableSize - 1);
@@ -40,7 +40,7 @@ float corner_at(const Corners& corners, float x, float y) {
 
 void summed_visibility(const ReceiverTables& tables, const LightSet& lights, float plane_scale, std::span<float> visible) {
   std::fill(visible.begin(), visible.end(), 0.f);
-  Corners corners;
+  CornerSums corners;
   for (int j = 0; j < tables.count; ++j) {
     sum_up(TableView(tables.table[j], kTableCells), corners);
     for (std::size_t i = 0; i < lights.count; ++i) {
