@@ -82,6 +82,8 @@ Fit fit_window(const SmoothInput& input, int x, int y, int step) {
   const float residual = std::max(squares, 0.f) / freedom;
   const float gentle = std::max(1 - (b * b + c * c) / kSteep, 0.f);
   const float allowed = kAllowed * gentle * gentle * variance;
+  // All or nothing at the end of a surface: what is fitted to one side alone says little there.
+  if (count < kWhole && (own == 0 || own == 1)) return {own, 1};
   const float keep = std::clamp(residual / std::max(allowed, 1e-20f) - 1, 0.f, 1.f);
   return {fit, keep};
 }

@@ -184,7 +184,9 @@ HWY_INLINE V fitted(D d, const Moments& m, V own, V value) {
   const V gentle = hn::Max(hn::NegMulAdd(slope, hn::Set(d, 1 / kSteep), one), zero);
   const V allowed = hn::Mul(hn::Mul(hn::Mul(hn::Set(d, kAllowed), gentle), gentle), variance);
   const V keep = clamp01(d, hn::Sub(hn::Div(residual, hn::Max(allowed, hn::Set(d, 1e-20f))), one));
-  return hn::IfThenElse(enough, hn::MulAdd(keep, hn::Sub(value, fit), fit), value);
+  const M plain = hn::AndNot(whole, hn::Or(hn::Eq(own, zero), hn::Eq(own, one)));
+  const M taken = hn::AndNot(plain, enough);
+  return hn::IfThenElse(taken, hn::MulAdd(keep, hn::Sub(value, fit), fit), value);
 }
 
 // window_level() of the pixels from (x, y) on.

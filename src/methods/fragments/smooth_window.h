@@ -43,7 +43,7 @@ inline constexpr float kSteep = 0.016f;
 /// With fewer pixels a plane says nothing.
 inline constexpr float kLeastCount = 10;
 /// What is one surface, as for upsampling.
-inline constexpr float kMinCosine = 0.9f, kMaxPlaneDistance = 0.02f, kMaxSlope = 0.35f;
+inline constexpr float kMinCosine = 0.985f, kMaxPlaneDistance = 0.02f, kMaxSlope = 0.35f;
 /// Keeps the fit regular where all pixels lie on one line.
 inline constexpr float kRidge = 1e-3f;
 
