@@ -79,6 +79,18 @@ bool has_infinite_light(const Scene& scene) {
                                           [](const Light& light) { return std::holds_alternative<DirectionalLight>(light.shape); });
 }
 
+bool same_mesh(const Mesh& a, const Mesh& b) {
+  return a.positions == b.positions && a.normals == b.normals && a.uvs == b.uvs && a.triangles == b.triangles &&
+         a.triangle_materials == b.triangle_materials && a.materials == b.materials;
+}
+
+// What decides where rays pass, and which way surfaces face.
+bool same_surface(const Material& a, const Material& b) {
+  return a.model.index() == b.model.index() && a.normal_map == b.normal_map && a.normal_scale == b.normal_scale && a.bump == b.bump &&
+         a.bump_scale == b.bump_scale && a.alpha_mode == b.alpha_mode && a.alpha_cutoff == b.alpha_cutoff &&
+         a.alpha.value == b.alpha.value && a.alpha.texture == b.alpha.texture && a.two_sided == b.two_sided;
+}
+
 }  // namespace
 
 bool same_textures(const Scene& a, const Scene& b) {
@@ -94,6 +106,13 @@ bool same_lights(const Scene& a, const Scene& b, const Bounds& bounds_a, const B
          all_same(a.spheres, b.spheres, [&](const Sphere& x, const Sphere& y) {
            return x.center == y.center && x.radius == y.radius && x.material == y.material && x.world_from_object == y.world_from_object &&
                   x.reverse_orientation == y.reverse_orientation;
+         });
+}
+
+bool same_surfaces(const Scene& a, const Scene& b) {
+  return all_same(a.materials, b.materials, same_surface) && all_same(a.meshes, b.meshes, same_mesh) &&
+         all_same(a.instances, b.instances, [](const Instance& x, const Instance& y) {
+           return x.mesh == y.mesh && x.world_from_object == y.world_from_object && x.material_override == y.material_override;
          });
 }
 

@@ -16,6 +16,7 @@ struct World::Impl {
   std::unique_ptr<const Tracer> tracer;
   std::shared_ptr<const LightTable> lights;
   SurfaceTables surfaces;
+  std::shared_ptr<const void> shadows;  ///< an address that nothing else has while somebody keeps it
 };
 
 namespace {
@@ -53,6 +54,7 @@ std::shared_ptr<const World> World::build(Scene scene, const WorldOptions& optio
   impl->tracer = make_tracer(impl->scene, *impl->textures, options, context, nullptr);
   impl->lights = std::make_shared<const LightTable>(impl->scene, *impl->textures, impl->tracer->bounds(), context);
   impl->surfaces = make_surface_tables(impl->scene, impl->tracer->placement(), options.shadow_terminator);
+  impl->shadows = std::make_shared<const char>();
   return std::shared_ptr<const World>(new World(std::move(impl)));
 }
 
@@ -71,6 +73,7 @@ std::shared_ptr<const World> World::edit(const World& previous, Scene scene, con
   impl->lights =
       lights_kept ? before.lights : std::make_shared<const LightTable>(impl->scene, *impl->textures, bounds, context, before.lights.get());
   impl->surfaces = make_surface_tables(impl->scene, impl->tracer->placement(), impl->options.shadow_terminator);
+  impl->shadows = lights_kept && same_surfaces(before.scene, impl->scene) ? before.shadows : std::make_shared<const char>();
   return std::shared_ptr<const World>(new World(std::move(impl)));
 }
 
@@ -80,6 +83,7 @@ const TextureSet& World::textures() const { return *impl_->textures; }
 const LightTable& World::lights() const { return *impl_->lights; }
 Bounds World::bounds() const { return impl_->tracer->bounds(); }
 bool World::shadow_terminator() const { return impl_->options.shadow_terminator; }
+const std::shared_ptr<const void>& World::shadows() const { return impl_->shadows; }
 std::uint64_t World::acceleration_bytes() const { return impl_->tracer->memory().acceleration_bytes; }
 
 void World::surfaces(const RayBatch& rays, const HitBatch& hits, SurfaceBatch& surfaces) const {

@@ -40,6 +40,10 @@ class World {
   Bounds bounds() const;
   bool shadow_terminator() const;
   std::uint64_t acceleration_bytes() const;
+  /// Equal for Worlds made from each other by edits that moved neither surfaces nor lights (but cameras, say): what two points see of each
+  /// other in one, they see in the other. Who keeps it can tell later, however many Worlds have come and gone. Never null; edits may give a
+  /// new one where the old would do.
+  const std::shared_ptr<const void>& shadows() const;
 
   /// Positions, normals, error bounds and materials of hits. `spread` (may be empty) is the width of each ray's cone at its origin and
   /// per unit length, used for texture footprints.

@@ -325,6 +325,28 @@ TEST(WorldEdit, MovingAStaticMeshPromotesItOnce) {
   expect_same_picture(*first, *build(mixed_scene()));
 }
 
+TEST(WorldEdit, ShadowsChangeWithSurfacesAndLightsAlone) {
+  Scene scene = mixed_scene();
+  scene.lights.push_back({.name = "lamp", .shape = PointLight{}, .node = {}});
+  const auto first = build(scene);
+  EXPECT_NE(build(scene)->shadows(), first->shadows());
+  const Context context;
+  const auto kept_by = [&](auto change) {
+    Scene changed = scene;
+    change(changed);
+    return World::edit(*first, std::move(changed), context)->shadows() == first->shadows();
+  };
+  EXPECT_TRUE(kept_by([](Scene&) {}));
+  EXPECT_TRUE(kept_by([](Scene& s) { s.cameras.emplace_back(); }));
+  EXPECT_FALSE(kept_by([](Scene& s) { s.instances[1].world_from_object[3].x += 1; }));
+  EXPECT_FALSE(kept_by([](Scene& s) { s.instances.pop_back(); }));
+  EXPECT_FALSE(
+      kept_by([](Scene& s) { s.meshes[0].positions = std::vector<Vec3>(s.meshes[0].positions.begin(), s.meshes[0].positions.end()); }));
+  EXPECT_FALSE(kept_by([](Scene& s) { std::get<PointLight>(s.lights[0].shape).position.x += 1; }));
+  EXPECT_FALSE(kept_by([](Scene& s) { s.lights.clear(); }));
+  EXPECT_FALSE(kept_by([](Scene& s) { s.materials.at(0).alpha_mode = AlphaMode::mask; }));
+}
+
 TEST(WorldEdit, BentMeshesRebuildThemselvesAlone) {
   Scene scene = mixed_scene();
   // A target that lifts the first mesh by 1, with a weight that goes from 0 to 1 within a second.
