@@ -74,6 +74,22 @@ bool AreaLight::out_of_reach(const Vec3& position, const Vec3& normal) const {
   });
 }
 
+float AreaLight::solid_angle(const Vec3& position, const Vec3& normal) const {
+  float sum = 0;
+  for (const Member& member : members) {
+    Vec3 centre(0);
+    for (const Vec3& corner : member.polygon) centre += corner / static_cast<float>(member.polygon.size());
+    Vec3 area(0);
+    for (std::size_t i = 2; i < member.polygon.size(); ++i)
+      area += 0.5f * glm::cross(member.polygon[i - 1] - member.polygon[0], member.polygon[i] - member.polygon[0]);
+    const Vec3 towards = centre - position;
+    const float squared = length_squared(towards), size = glm::length(area);
+    const bool below = std::ranges::all_of(member.polygon, [&](const Vec3& corner) { return glm::dot(corner - position, normal) <= 0; });
+    if (!below) sum += size * std::fabs(glm::dot(towards, member.normal)) / (std::sqrt(squared) * (squared + size));
+  }
+  return sum;
+}
+
 bool AreaLight::above(const Vec3& position, const Vec3& normal) const {
   return std::ranges::all_of(members, [&](const Member& member) {
     return std::ranges::all_of(member.polygon, [&](const Vec3& corner) { return glm::dot(corner - position, normal) > 0; });

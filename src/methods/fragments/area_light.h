@@ -32,6 +32,8 @@ struct AreaLight {
   std::size_t pick(float& u) const;
   /// No member sends light to a point with this normal: all below its horizon, or turned away.
   bool out_of_reach(const Vec3& position, const Vec3& normal) const;
+  /// About how much of the half-space above the surface its members fill, in steradians; from afar.
+  float solid_angle(const Vec3& position, const Vec3& normal) const;
   /// Every point of it lies above the plane.
   bool above(const Vec3& position, const Vec3& normal) const;
 };

@@ -1,6 +1,7 @@
 #include "methods/fragments/finest_test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/math/vec3_batch.h"
@@ -10,6 +11,10 @@ namespace sightline {
 namespace {
 
 constexpr std::size_t kLanesAtOnce = 1024;
+// What is known is not used where it changes by more than this from pixel to pixel: each picture would blur it.
+constexpr float kSteepPrior = 0.03f;
+// Nor if the first rays contradict it: by more than their noise, or at all where nothing but all or nothing is known.
+constexpr float kPriorNoise = 0.2f;
 
 }  // namespace
 
@@ -36,7 +41,11 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
   points_.make(world_.lights(), light, sample, whole, queries_);
   open_.resize(pixels.size());
   std::iota(open_.begin(), open_.end(), 0u);
-  const std::uint32_t first = std::min(options_.early_out ? std::max(rays / 4, 16u) : rays, rays);
+  const std::uint32_t first = std::min(options_.early_out || prior_ ? std::max(rays / 4, 16u) : rays, rays);
+  known_.assign(pixels.size(), static_cast<std::uint8_t>(std::min(rays, 255u)));
+  const bool with_prior = prior_ && ratio;
+  kept_ = 0, penumbra_.clear();
+  if (with_prior) take_prior(g, pixels, rays, values[0]);
   trace(g, pixels, open_, 0, first, ratio, statistics);
   if (!ratio) {
     // Pixels that stop early have a quarter of the samples.
@@ -45,12 +54,14 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
       for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)][i] = sums_[i].irradiance[c] * scale;
     }
   }
+  if (with_prior) blend_prior(pixels, first, rays, values[0]);
   if (first < rays) {
-    close_saturated(g, pixels);
+    if (options_.early_out) close_saturated(g, pixels, first);
     trace(g, pixels, open_, first, rays - first, ratio, statistics);
   }
   if (ratio) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (with_prior && prior_values_[i].rays > 0) continue;
       const Sums& s = sums_[i];
       values[0][i] = s.seen == 0 ? 0.f : s.seen == s.asked ? 1.f : s.visible / s.all;
     }
@@ -62,11 +73,46 @@ void FinestTest::test(const GBuffer& g, const AreaLight& light, std::span<const 
   }
 }
 
+// Pixels of which enough is known take it, but for those whose turn it is to trace rays.
+void FinestTest::take_prior(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t rays, std::vector<float>& values) {
+  prior_values_.resize(pixels.size());
+  std::erase_if(open_, [&](std::uint32_t i) {
+    PriorShares::Value& prior = prior_values_[i] = prior_->at(g, pixels[i]);
+    if (prior.spread > kSteepPrior) prior.rays = 0;
+    const float enough = static_cast<float>(prior.saturated() ? std::min(rays, 16u) : rays);
+    if (!(prior.rays >= enough) || prior_->is_due(pixels[i])) return false;
+    values[i] = prior.share, known_[i] = static_cast<std::uint8_t>(prior.rays);
+    if (!prior.saturated()) penumbra_.push_back(pixels[i]);
+    ++kept_;
+    return true;
+  });
+}
+
+// Pixels whose first rays agree with what is known are done, with the mean of both.
+void FinestTest::blend_prior(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t rays, std::vector<float>& values) {
+  std::erase_if(open_, [&](std::uint32_t i) {
+    PriorShares::Value& prior = prior_values_[i];
+    if (!(prior.rays > 0)) return false;
+    const Sums& s = sums_[i];
+    const float own = s.seen == 0 ? 0.f : s.seen == s.asked ? 1.f : s.visible / s.all;
+    if (prior.saturated() ? own != prior.share : std::fabs(own - prior.share) > kPriorNoise) {
+      prior.rays = 0;
+      return false;
+    }
+    const float known = std::min(prior.rays, static_cast<float>(rays)), added = static_cast<float>(first);
+    values[i] = prior.saturated() ? own : (known * prior.share + added * own) / (known + added);
+    known_[i] = static_cast<std::uint8_t>(std::min(known + added, 255.f));
+    if (!prior.saturated()) penumbra_.push_back(pixels[i]);
+    return true;
+  });
+}
+
 // Pixels whose first rays agree are done, but for those beside others in penumbra: there, all or nothing is mostly chance.
-void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels) {
+void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t first) {
   const auto saturated = [&](std::uint32_t i) { return sums_[i].seen == 0 || sums_[i].seen == sums_[i].asked; };
   mixed_.resize(g.element_count());
   for (const std::uint32_t i : open_) mixed_[pixels[i]] = !saturated(i);
+  for (const std::uint32_t pixel : penumbra_) mixed_[pixel] = 1;
   const auto stride = static_cast<std::ptrdiff_t>(g.stride), count = static_cast<std::ptrdiff_t>(g.element_count());
   const auto beside_mixed = [&](std::uint32_t i) {
     for (std::ptrdiff_t dy = -1; dy <= 1; ++dy) {
@@ -77,8 +123,13 @@ void FinestTest::close_saturated(const GBuffer& g, std::span<const std::uint32_t
     }
     return false;
   };
-  std::erase_if(open_, [&](std::uint32_t i) { return saturated(i) && !beside_mixed(i); });
+  std::erase_if(open_, [&](std::uint32_t i) {
+    const bool done = saturated(i) && !beside_mixed(i);
+    if (done) known_[i] = static_cast<std::uint8_t>(std::min(first, 255u));
+    return done;
+  });
   for (const std::uint32_t i : open_) mixed_[pixels[i]] = 0;
+  for (const std::uint32_t pixel : penumbra_) mixed_[pixel] = 0;
 }
 
 // Every packet of rays is of one pixel, which is kind to the tracer.

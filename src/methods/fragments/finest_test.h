@@ -12,6 +12,7 @@
 #include "methods/fragments/finest_lanes.h"
 #include "methods/fragments/finest_points.h"
 #include "methods/fragments/g_buffer.h"
+#include "methods/fragments/history.h"
 #include "methods/fragments/unshadowed.h"
 #include "methods/method.h"
 
@@ -29,19 +30,26 @@ class FinestTest {
   FinestTest(const World& world, const View& view, Visibility& visibility, const FinestOptions& options, std::uint64_t seed);
 
   void begin(std::uint32_t scope) { worker_->begin(scope); }
+  /// From now on pixels take over what is known of them, and trace a few rays only now and then. Null: nothing is known.
+  void set_prior(const PriorShares* prior) { prior_ = prior; }
   /// The signal of `light`, by `rays` rays each, at the given pixels (elements of the GBuffer) in picture sample `sample`; values[c][i] for
   /// channel c: the visible share for one channel, irradiance / pi for three.
   void test(const GBuffer& g, const AreaLight& light, std::span<const std::uint32_t> pixels, std::uint32_t sample, std::uint32_t rays,
             int channels, std::array<std::vector<float>, 3>& values, PassStatistics& statistics);
   /// How many questions pixel `i` of the last test has asked; exact visibility traces as many rays.
   std::uint32_t asked(std::size_t i) const { return sums_[i].asked; }
+  /// With what is known taken into account: how many rays stand behind pixel `i` of the last test, and how many pixels have traced none.
+  std::uint8_t known(std::size_t i) const { return known_[i]; }
+  std::size_t kept() const { return kept_; }
 
  private:
   /// Traces rays [first, first + count) of the listed pixels and adds to their sums.
   void trace(const GBuffer& g, std::span<const std::uint32_t> pixels, std::span<const std::uint32_t> which, std::uint32_t first,
              std::uint32_t count, bool ratio, PassStatistics& statistics);
 
-  void close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels);
+  void take_prior(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t rays, std::vector<float>& values);
+  void blend_prior(std::span<const std::uint32_t> pixels, std::uint32_t first, std::uint32_t rays, std::vector<float>& values);
+  void close_saturated(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t first);
   FinestTerms weigh_by_lobe(const Receiver& receiver, const FinestRun& run);
 
   struct Sums {
@@ -58,6 +66,11 @@ class FinestTest {
   FinestPoints points_;
   std::vector<Sums> sums_;
   std::vector<std::uint32_t> open_;
+  const PriorShares* prior_ = nullptr;
+  std::vector<PriorShares::Value> prior_values_;  ///< by pixel, with a prior; without rays: not to be used
+  std::vector<std::uint32_t> penumbra_;           ///< pixels that are done, and beside which all or nothing is mostly chance
+  std::vector<std::uint8_t> known_;
+  std::size_t kept_ = 0;
   std::vector<std::uint8_t> mixed_;  ///< laid out as the GBuffer; 0 between calls
   std::vector<FinestRun> runs_;
   AlignedVector<float> term_, weights_;

@@ -30,6 +30,8 @@ struct LightSignal {
   int channels = 1;
   int stride = 0, rows = 0;
   AlignedVector<std::uint8_t> level, flags;
+  /// Rays that stand behind a pixel. Empty: nobody wants to know.
+  AlignedVector<std::uint8_t> rays;
   std::array<AlignedVector<float>, 3> value, extra;
   /// By block of 8 x 8 pixels: the last round of refinement along borders that changed it, from 1 on; 0 = none.
   AlignedVector<std::uint8_t> round;

@@ -1,6 +1,7 @@
 #include "methods/fragments/method.h"
 
 #include "base/core/error.h"
+#include "methods/fragments/options.h"
 #include "methods/fragments/picture.h"
 #include "methods/fragments/settings.h"
 
@@ -29,6 +30,16 @@ void FragmentsMethod::check(const Scene&, const RenderJob& job) const {
   const S& settings = job.settings.as<S>();
   if (settings.refine == S::Refine::all && settings.show != S::Show::picture)
     throw usage_error("refine=all has no stages to show").remedy("leave out refine=all, or show=");
+  if (settings.temporal) {
+    const FragmentOptions options = resolve(settings);
+    if (options.refine != FragmentOptions::Refine::probes || !options.ratio)
+      throw usage_error("temporal=on keeps shares of lights that probes have seen")
+          .remedy("use refine=koa and signal=ratio, or temporal=off");
+    if (job.total_spp != 1)
+      throw usage_error("temporal=on takes one picture after the other, of one sample a pixel each").remedy("use --spp 1, or temporal=off");
+    if (job.visibility && !job.visibility->exact())
+      throw usage_error("temporal=on saves rays, and there are none to save here").remedy("use --visibility exact, or temporal=off");
+  }
   if (job.visibility && !job.visibility->binary())
     throw usage_error("method fragments compares which rays arrive: it needs answers of yes or no")
         .remedy("use --visibility exact or cached");

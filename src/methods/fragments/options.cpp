@@ -66,10 +66,12 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.dark_culling = s.dark_culling;
   o.confirm = number(s.confirm, -1, ours && !fast ? 1 : 0);
   o.penumbra_level = number(s.penumbra_level, -1, ours && !fast ? 2 : 8);
+  o.near_rays = ours && !fast && probes && o.ratio && s.level0_rays == 0;
   o.border_rounds = o.ratio ? number(s.borders, -1, ours && !fast ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
   o.glossy = s.glossy == S::Glossy::ltc ? GlossyTerm::ltc : GlossyTerm::quadrature;
   o.edge_samples = s.edge_samples;
+  o.temporal = s.temporal;
   return o;
 }
 

@@ -24,13 +24,15 @@ struct FragmentOptions {
   bool sparse_tests = true;  ///< small fragments trace a quarter of their rays first
   bool extra_samples = true;
   int confirm = 1;                      ///< probes that confirm a stable fragment of level 3 or more
+  bool near_rays = true;                ///< twice the rays where a light is large to the eye
   int penumbra_level = 2;               ///< stable fragments from this level on that partly see the light trace more rays
   int border_rounds = 3;                ///< how often fragments beside jumps of the signal are refined again
   float border_jump = 0.25f;            ///< in shares of the light
   float border_jump_saturated = 0.05f;  ///< the same beside fragments that see all or nothing of it
   int nichols_threshold = 6;
   GlossyTerm glossy = GlossyTerm::quadrature;
-  int edge_samples = 1;  ///< camera rays a pixel on geometric edges
+  int edge_samples = 1;   ///< camera rays a pixel on geometric edges
+  bool temporal = false;  ///< take over what the last picture knows
 };
 
 FragmentOptions resolve(const FragmentsSettings& settings);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <mutex>
 #include <utility>
 
 #include "base/core/huge_pages.h"
+#include "base/core/stopwatch.h"
 #include "base/math/vec3_batch.h"
 #include "base/parallel/parallel.h"
 #include "methods/fragments/smooth.h"
@@ -18,10 +18,6 @@ namespace {
 // More lights than this are folded into groups.
 constexpr std::size_t kLights = 16;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 void count_refinement(const RefinementCounts& before, const RefinementCounts& after, PassStatistics& statistics) {
   const auto count = [&](const char* name, std::uint64_t RefinementCounts::* member) {
     statistics.method_statistics[name] += static_cast<double>(after.*member) - static_cast<double>(before.*member);
@@ -29,6 +25,8 @@ void count_refinement(const RefinementCounts& before, const RefinementCounts& af
   count("fragments", &RefinementCounts::fragments), count("level0_fragments", &RefinementCounts::finest);
   count("test_rays", &RefinementCounts::test_rays), count("confirmation_rays", &RefinementCounts::confirm_rays);
   count("level0_rays", &RefinementCounts::finest_rays), count("penumbra_rays", &RefinementCounts::penumbra_rays);
+  if (after.kept_fragments > before.kept_fragments) count("kept_fragments", &RefinementCounts::kept_fragments);
+  if (after.kept_pixels > before.kept_pixels) count("kept_pixels", &RefinementCounts::kept_pixels);
   count("extra_rays", &RefinementCounts::extra_rays), count("extra_samples", &RefinementCounts::extra_samples);
 }
 
@@ -44,8 +42,10 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
       buffers_(std::move(buffers)),
       map_(settings.show) {
   const World& world = *job.world;
-  if (job.light_samples > 0)
+  if (job.light_samples > 0) {
     options_.finest.rays = options_.finest.smooth_rays = static_cast<std::uint32_t>(std::max(job.light_samples, 16));
+    options_.near_rays = false;
+  }
   if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;
   const auto rays = neighbours ? NicholsRefiner::kRays : static_cast<std::uint32_t>(options_.split.rays);
@@ -54,6 +54,7 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
     points_.push_back(light_points(world.lights(), light, rays, context.seed, jitter));
   }
   allocate();
+  begin_history();
   fragments_.resize(g_.root_count()), progress_.resize(g_.root_count());
   const auto threads = static_cast<std::size_t>(context.thread_count());
   cameras_.resize(threads), refiners_.resize(threads), pyramids_.resize(threads), composers_.resize(threads);
@@ -76,15 +77,33 @@ void FragmentPicture::allocate() {
   g_.glossy_index.resize(n);
 }
 
+// What the last picture knew is this one's as long as neither light, nor geometry, nor what is asked for has changed.
+void FragmentPicture::begin_history() {
+  signal_.rays.clear();
+  if (!options_.temporal) {
+    buffers_.last = {}, buffers_.next = {};
+    return;
+  }
+  PictureHistory &last = buffers_.last, &next = buffers_.next;
+  next.identity = {job_.world->shadows(), settings_, context_.seed, job_.light_samples, view_.width(), view_.height()};
+  next.identity.settings.show = FragmentsSettings::Show::picture;
+  next.projection = PictureProjection(view_.pinhole());
+  const bool same = last.identity == next.identity;
+  next.pictures = same ? last.pictures + 1 : 0;
+  next.resize(g_, lights_.size());
+  signal_.rays.resize(g_.element_count());
+  for (std::size_t l = 0; same && l < lights_.size(); ++l) priors_.emplace_back(last, l);
+}
+
 // Runs body(tile, thread, statistics) over `count` tiles, and adds up what they counted and how long they took.
 template <class Body>
 void FragmentPicture::for_tiles(const char* stage, std::size_t count, PassStatistics& statistics, Body body) {
   std::mutex mutex;
   parallel_for(context_, count, 1, [&](std::size_t begin, std::size_t end) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     PassStatistics local;
     for (std::size_t tile = begin; tile < end; ++tile) body(tile, static_cast<std::size_t>(worker_index()) % cameras_.size(), local);
-    local.stage_seconds[stage] += seconds_since(start);
+    local.stage_seconds[stage] += stopwatch.seconds();
     const std::lock_guard lock(mutex);
     statistics += local;
     steps_done_ = std::min(steps_done_ + static_cast<double>(end - begin), steps_);
@@ -124,20 +143,23 @@ void FragmentPicture::render(std::uint32_t sample, Frame& frame, PassStatistics&
     });
   }
   if (options_.edge_samples > 1) trace_edges(sample, sampling, statistics);
+  // Light points of the last picture would tell nothing new of the same places.
+  const std::uint32_t points = sample + (options_.temporal ? buffers_.next.pictures : 0);
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     for (std::unique_ptr<Refiner>& r : refiners_) {
       if (!r) {
         r = std::make_unique<Refiner>(*job_.world, view_, *job_.visibility, options_, context_.seed);
         if (map_.watches_tests()) r->watch(map_);
       }
-      r->set_light(lights_[l], points_[l]);
+      r->set_light(lights_[l], points_[l], priors_.empty() ? nullptr : &priors_[l]);
     }
-    render_light(lights_[l], sample, statistics);
+    render_light(lights_[l], points, statistics);
   }
   if (edges_) {
     for_roots("edges", statistics, [&](std::size_t root, std::size_t, PassStatistics&) { edges_->average(root, radiance_); });
   }
   write(sample, frame, statistics);
+  if (options_.temporal) std::swap(buffers_.last, buffers_.next);
 }
 
 void FragmentPicture::trace_edges(std::uint32_t sample, CameraPass::Sampling sampling, PassStatistics& statistics) {
@@ -216,6 +238,13 @@ void FragmentPicture::upsample_light(const AreaLight& light, std::uint32_t sampl
   for_roots("shading", statistics, [&](std::size_t root, std::size_t thread, PassStatistics&) {
     composers_[thread].add(g_, g_.root(root), light, pixels, radiance_);
   });
+  if (options_.temporal) {
+    const auto index = static_cast<std::size_t>(&light - lights_.data());
+    for_roots("history", statistics, [&](std::size_t root, std::size_t, PassStatistics&) {
+      if (index == 0) buffers_.next.keep_surfaces(g_, g_.root(root));
+      buffers_.next.keep_shares(g_, g_.root(root), index, signal_, pixels_[0]);
+    });
+  }
   if (!edges_) return;
   for_tiles("edges", edges_->tile_count(), statistics, [&](std::size_t tile, std::size_t thread, PassStatistics& local) {
     edges_->light(g_, {light, signal_, pixels}, tile, sample, thread, local);

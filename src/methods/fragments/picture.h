@@ -38,6 +38,7 @@ class FragmentPicture {
 
  private:
   void allocate();
+  void begin_history();
   template <class Body>
   void for_tiles(const char* stage, std::size_t count, PassStatistics& statistics, Body body);
   template <class Body>
@@ -66,6 +67,7 @@ class FragmentPicture {
   LightSignal& signal_ = buffers_.signal;
   std::array<AlignedVector<float>, 3>& pixels_ = buffers_.pixels;
   AlignedVector<float>& smoothed_ = buffers_.smoothed;
+  std::vector<PriorShares> priors_;  ///< by light; empty: nothing is known
   StageMap map_;
   std::unique_ptr<EdgePass> edges_;
   std::vector<std::vector<Fragment>> fragments_;  ///< by root tile: what geometry left

@@ -8,6 +8,7 @@
 
 #include "base/core/aligned.h"
 #include "methods/fragments/g_buffer.h"
+#include "methods/fragments/history.h"
 #include "methods/fragments/light_signal.h"
 
 namespace sightline {
@@ -19,6 +20,8 @@ struct PictureBuffers {
   LightSignal signal;
   std::array<AlignedVector<float>, 3> pixels;  ///< the signal at every pixel
   AlignedVector<float> smoothed;
+  /// With temporal re-use: of the last picture, and of the one at hand.
+  PictureHistory last, next;
 };
 
 /// Keeps the arrays of one picture. The first touch of new memory takes a tenth of a frame, and animations and moving cameras ask for frame

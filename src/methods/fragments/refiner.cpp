@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/math/vec3_batch.h"
+
 namespace sightline {
 namespace {
 
@@ -16,6 +18,10 @@ constexpr std::size_t kManyPixels = static_cast<std::size_t>(kRootSize) * kRootS
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
 
+// Solid angle in steradians from which on a light is large, and how far apart pixels lie that are asked for it.
+constexpr float kLargeLight = 0.3f;
+constexpr int kSparsePixels = 8;
+
 }  // namespace
 
 Refiner::Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed)
@@ -23,8 +29,9 @@ Refiner::Refiner(const World& world, const View& view, Visibility& visibility, c
   if (options.sparse_tests) probes_.ask_sparsely();
 }
 
-void Refiner::set_light(const AreaLight& light, const LightPoints& points) {
-  light_ = &light, points_ = &points;
+void Refiner::set_light(const AreaLight& light, const LightPoints& points, const PriorShares* prior) {
+  light_ = &light, points_ = &points, prior_ = prior;
+  finest_test_.set_prior(prior);
   probes_.set_light(light, points);
 }
 
@@ -39,6 +46,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   progress.children.assign(fragments.begin(), fragments.end());
   begin(index, sample);
   reach_.build(g, g.root(index), *light_);
+  large_light_ = progress.large_light = options_.near_rays && light_is_large(g, g.root(index));
   reached_ = false;
   clear(g, g.root(index), signal);
   // What geometry left of level 0 has no neighbours to be smoothed with.
@@ -59,8 +67,21 @@ void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t 
       for (int x = f.x; x < x1; x += LightSignal::kBlock) signal.round_at(x, y) = static_cast<std::uint8_t>(round);
   }
   begin(index, sample);
+  large_light_ = progress.large_light;
   reached_ = true;  // stable fragments were tested, and so are their children
   refine_children(g, sample, signal, progress, statistics);
+}
+
+// Errors grow with what a light adds to a pixel, and with the number of edges before it: near a large light both are at their largest.
+bool Refiner::light_is_large(const GBuffer& g, const RootTile& tile) const {
+  for (int y = tile.y0; y < tile.y1; y += kSparsePixels) {
+    for (int x = tile.x0; x < tile.x1; x += kSparsePixels) {
+      const std::size_t at = g.at(x, y);
+      if (g.kind[at] != PixelKind::diffuse && g.kind[at] != PixelKind::analytic) continue;
+      if (light_->solid_angle(load(g.position, at), load(g.geometric_normal, at)) > kLargeLight) return true;
+    }
+  }
+  return false;
 }
 
 void Refiner::begin(std::size_t index, std::uint32_t sample) {
@@ -93,7 +114,7 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
         ++counts_.fragments;
       } else if (f.level == 0) {
         finest_.push_back(static_cast<std::uint32_t>(g.at(f.x, f.y)));
-      } else {
+      } else if (!prior_ || !decide_by_prior(g, f, signal)) {
         current_.push_back(f);
       }
     }
@@ -111,6 +132,23 @@ void Refiner::run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& sig
     counts_.fragments += stable_.size();
     done_.insert(done_.end(), stable_.begin(), stable_.end());
   }
+}
+
+// Whether what the last picture knows decides about a fragment, which is then done or split.
+bool Refiner::decide_by_prior(const GBuffer& g, const Fragment& f, LightSignal& signal) {
+  using Verdict = PriorShares::Verdict;
+  ProbeMasks masks;
+  const Verdict verdict = prior_->of(g, f, static_cast<int>(points_->count), masks);
+  if (verdict == Verdict::open) return false;
+  ++counts_.kept_fragments;
+  if (verdict == Verdict::split) {
+    split(f, masks);
+    return true;
+  }
+  write_level(g, f, 0, signal), write_constant(g, f, verdict == Verdict::lit ? 1.f : 0.f, signal);
+  ++counts_.fragments;
+  done_.push_back(f);
+  return true;
 }
 
 void Refiner::split(const Fragment& f, const ProbeMasks& masks) { subdivide(f, fine_quadrants(masks, options_.split), children_); }
@@ -141,6 +179,7 @@ void Refiner::split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMa
     }
     signal.level[at] = 0, signal.flags[at] = 0;
     signal.value[0][at] = mask != 0 ? 1.f : 0.f;
+    if (!signal.rays.empty()) signal.rays[at] = static_cast<std::uint8_t>(points_->count);
     ++counts_.finest, ++counts_.fragments;
   }
 }
@@ -183,7 +222,7 @@ void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
     else
       write_stable(g, f, stable_masks_[i], signal);
     // Where the light is partly seen, points shared by four probes make steps between fragments: the probes trace rays of their own.
-    for (int q = 0; q < 4 && f.level >= options_.penumbra_level && signal.channels == 1; ++q) {
+    for (int q = 0; q < 4 && f.level >= penumbra_level() && signal.channels == 1; ++q) {
       const std::uint64_t mask = stable_masks_[i][static_cast<std::size_t>(q)];
       if (mask == 0 || mask == all_points()) continue;
       const IVec2 pixel = probe_pixel(g, f, q);
@@ -214,8 +253,8 @@ void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal)
 
 void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   const bool many = geometry_pixels_.size() > kManyPixels;
-  write_pixels(g, geometry_pixels_, many ? options_.finest.rays : options_.finest.smooth_rays, sample, signal, statistics);
-  write_pixels(g, finest_, options_.finest.smooth_rays, sample, signal, statistics);
+  write_pixels(g, geometry_pixels_, many ? options_.finest.rays : pixel_rays(), sample, signal, statistics);
+  write_pixels(g, finest_, pixel_rays(), sample, signal, statistics);
 }
 
 void Refiner::write_pixels(const GBuffer& g, std::span<const std::uint32_t> pixels, std::uint32_t rays, std::uint32_t sample,
@@ -223,10 +262,11 @@ void Refiner::write_pixels(const GBuffer& g, std::span<const std::uint32_t> pixe
   const std::uint64_t before = statistics.rays.occlusion;
   finest_test_.test(g, *light_, pixels, sample, rays, signal.channels, values_, statistics);
   counts_.finest_rays += statistics.rays.occlusion - before;
-  counts_.finest += pixels.size(), counts_.fragments += pixels.size();
+  counts_.finest += pixels.size(), counts_.fragments += pixels.size(), counts_.kept_pixels += finest_test_.kept();
   if (map_) map_pixels(pixels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     signal.level[pixels[i]] = 0, signal.flags[pixels[i]] = 0;
+    if (!signal.rays.empty()) signal.rays[pixels[i]] = finest_test_.known(i);
     for (int c = 0; c < signal.channels; ++c)
       signal.value[static_cast<std::size_t>(c)][pixels[i]] = values_[static_cast<std::size_t>(c)][i];
   }
@@ -235,7 +275,7 @@ void Refiner::write_pixels(const GBuffer& g, std::span<const std::uint32_t> pixe
 void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   if (penumbra_.empty()) return;
   const std::uint64_t before = statistics.rays.occlusion;
-  finest_test_.test(g, *light_, penumbra_, sample, options_.finest.smooth_rays, 1, values_, statistics);
+  finest_test_.test(g, *light_, penumbra_, sample, pixel_rays(), 1, values_, statistics);
   counts_.penumbra_rays += statistics.rays.occlusion - before;
   for (std::size_t i = 0; map_ && map_->wants_rays() && i < penumbra_.size(); ++i) {
     const auto stride = static_cast<std::uint32_t>(g.stride);
@@ -250,7 +290,7 @@ void Refiner::resolve_penumbrae(const GBuffer& g, std::uint32_t sample, LightSig
 void Refiner::add_extras(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
   if (extras_.empty()) return;
   const std::uint64_t before = statistics.rays.occlusion;
-  finest_test_.test(g, *light_, extras_, sample, options_.finest.smooth_rays, signal.channels, values_, statistics);
+  finest_test_.test(g, *light_, extras_, sample, pixel_rays(), signal.channels, values_, statistics);
   counts_.extra_rays += statistics.rays.occlusion - before, counts_.extra_samples += extras_.size();
   if (map_) map_pixels(extras_);
   contradicted_.assign(stable_.size(), 0);

@@ -1,6 +1,7 @@
 // Waves of fragments over one root tile and one light: test, classify, split, until every fragment is stable or a pixel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,7 @@
 #include "methods/fragments/finest_test.h"
 #include "methods/fragments/fragment.h"
 #include "methods/fragments/g_buffer.h"
+#include "methods/fragments/history.h"
 #include "methods/fragments/light_signal.h"
 #include "methods/fragments/options.h"
 #include "methods/fragments/probe_test.h"
@@ -24,12 +26,14 @@ struct RefinementCounts {
   std::uint64_t fragments = 0;  ///< stable ones and pixels
   std::uint64_t finest = 0;     ///< of those, pixels of level 0
   std::uint64_t test_rays = 0, confirm_rays = 0, finest_rays = 0, penumbra_rays = 0, extra_rays = 0, extra_samples = 0;
+  std::uint64_t kept_fragments = 0, kept_pixels = 0;  ///< without rays, by what the last picture knew
 };
 
 /// How far a root tile has come.
 struct TileProgress {
   std::vector<Fragment> done;      ///< stable fragments that the light reaches
   std::vector<Fragment> children;  ///< to be refined next
+  bool large_light = false;        ///< the light fills much of the sky somewhere in the tile
 };
 
 /// Buffers of one thread.
@@ -37,7 +41,8 @@ class Refiner {
  public:
   Refiner(const World& world, const View& view, Visibility& visibility, const FragmentOptions& options, std::uint64_t seed);
 
-  void set_light(const AreaLight& light, const LightPoints& points);
+  /// `prior` may be null: nothing is known of the light.
+  void set_light(const AreaLight& light, const LightPoints& points, const PriorShares* prior = nullptr);
   /// From now on tests are written to `map`, which must live as long as this.
   void watch(StageMap& map);
   /// Refines `fragments` (those that geometry left) of root tile `index`, and writes the tile's part of `signal`.
@@ -66,9 +71,13 @@ class Refiner {
  private:
   void begin(std::size_t index, std::uint32_t sample);
   void refine_children(const GBuffer& g, std::uint32_t sample, LightSignal& signal, TileProgress& progress, PassStatistics& statistics);
+  bool decide_by_prior(const GBuffer& g, const Fragment& f, LightSignal& signal);
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void classify(const GBuffer& g, LightSignal& signal);
   void split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal);
+  bool light_is_large(const GBuffer& g, const RootTile& tile) const;
+  std::uint32_t pixel_rays() const { return (large_light_ ? 2 : 1) * options_.finest.smooth_rays; }
+  int penumbra_level() const { return large_light_ ? std::min(options_.penumbra_level, 1) : options_.penumbra_level; }
   std::uint64_t all_points() const { return points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1; }
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
@@ -88,8 +97,10 @@ class Refiner {
   FinestTest finest_test_;
   const AreaLight* light_ = nullptr;
   const LightPoints* points_ = nullptr;
+  const PriorShares* prior_ = nullptr;
 
   ReachPyramid reach_;
+  bool large_light_ = false;
   bool reached_ = false;  ///< the light is known to reach all fragments at hand
   std::vector<Fragment> current_, children_, stable_, unconfirmed_, done_;
   std::vector<ProbeMasks> masks_, stable_masks_;

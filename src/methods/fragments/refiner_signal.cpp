@@ -19,9 +19,12 @@ Pixels clipped(const GBuffer& g, const Fragment& f) {
 
 void Refiner::write_level(const GBuffer& g, const Fragment& f, std::uint8_t flags, LightSignal& signal) const {
   const Pixels p = clipped(g, f);
+  // Probes in penumbra trace rays of their own.
+  const auto rays = static_cast<std::uint8_t>(f.level >= penumbra_level() ? std::min(pixel_rays(), 255u) : points_->count);
   for (int y = p.y0; y < p.y1; ++y) {
     std::fill_n(signal.level.data() + g.at(p.x0, y), p.x1 - p.x0, f.level);
     std::fill_n(signal.flags.data() + g.at(p.x0, y), p.x1 - p.x0, flags);
+    if (!signal.rays.empty()) std::fill_n(signal.rays.data() + g.at(p.x0, y), p.x1 - p.x0, rays);
   }
 }
 

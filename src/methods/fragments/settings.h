@@ -43,7 +43,9 @@ struct FragmentsSettings {
   Jitter jitter = Jitter::variant;
   Glossy glossy = Glossy::quadrature;
   int edge_samples = 1;
+  bool temporal = false;
   Show show = Show::picture;
+  friend bool operator==(const FragmentsSettings&, const FragmentsSettings&) = default;
 
   template <class Visitor>
   static void describe(Visitor&& visit) {
@@ -113,6 +115,8 @@ struct FragmentsSettings {
            .choices = {"quadrature", "ltc"}});
     visit("edge_samples", &S::edge_samples,
           {.help = "camera rays a pixel on geometric edges (anti-aliasing); 1 = none", .minimum = 1, .maximum = 16});
+    visit("temporal", &S::temporal,
+          {.help = "take over what the last picture knows, while nothing but the camera moves (pictures of one sample a pixel)"});
     visit("show", &S::show,
           {.help = "the picture, or a map of one of the stages",
            .choices = {"picture", "levels", "gradients", "rays", "signal", "curvature"}});
