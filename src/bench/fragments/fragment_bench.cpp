@@ -19,6 +19,7 @@ const std::vector<BenchPart>& part_table() {
       {"curve", {"sponza-court", "conference", "hairball-room"}},
       {"sizes", {"sponza-court"}},
       {"interactive", {"sponza-court"}},
+      {"temporal", {"sponza-court"}},
   };
   return table;
 }
@@ -43,6 +44,7 @@ void measure_view(const BuiltView& view, const BenchPlan& plan, const FragmentBe
     if (Json sizes = fragment_sizes(view, options, context); !sizes.is_null()) json["sizes"].push_back(std::move(sizes));
   }
   if (plan.has("interactive", view.name)) json["interactive"].push_back(fragment_interactive(view, options, results.strip, context));
+  if (plan.has("temporal", view.name)) json["temporal"].push_back(fragment_temporal(view, options, context));
 }
 
 }  // namespace
@@ -52,8 +54,8 @@ std::vector<std::string> fragment_bench_parts() { return part_names(part_table()
 BenchResults run_fragment_bench(const FragmentBenchOptions& options, const Context& context) {
   const BenchPlan plan(part_table(), options.parts, options.views);
   plan.check_read("--strip", options.strip, {"interactive"});
-  plan.check_read("--truth-samples", options.truth_samples > 0, {"table", "curve", "sizes"});
-  plan.check_read("--cache-dir", !options.cache.empty(), {"table", "curve", "sizes"});
+  plan.check_read("--truth-samples", options.truth_samples > 0, {"table", "curve", "sizes", "temporal"});
+  plan.check_read("--cache-dir", !options.cache.empty(), {"table", "curve", "sizes", "temporal"});
   plan.check_read("--rounds", options.rounds > 0, {"table", "curve", "sizes"});
   BenchResults results;
   results.json = {{"sightline", kVersion},      {"suite", "fragments"},   {"threads", context.thread_count()},

@@ -25,7 +25,7 @@ struct FragmentBenchOptions {
   bool quick = false;              ///< small pictures, few samples and rounds: not to be quoted
 };
 
-/// table, curve, sizes, interactive.
+/// table, curve, sizes, interactive, temporal.
 std::vector<std::string> fragment_bench_parts();
 
 /// Measures in this process. Views whose files are missing are left out with a warning. When cancelled, what is complete by then is

@@ -18,9 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFrames = 120, kQuickFrames = 6, kStripFrames = 6;
-// The path is in metres of the court; other scenes are walked in proportion.
-constexpr const char* kCourt = "sponza-court";
-constexpr float kCourtHalfDiagonal = 20;
 
 /// Frames side by side, exposed for looking at, over their maps of levels.
 class Strip {
@@ -55,7 +52,7 @@ Json fragment_interactive(BuiltView view, const FragmentBenchOptions& options, s
   const int frames = options.quick ? kQuickFrames : kFrames;
   view.size_px = options.size_px.value_or(options.quick ? IVec2(160, 120) : IVec2(640, 480));
   context.info(fmt::format("bench fragments: path of camera and light, {}", view.name));
-  const float scale = view.name == kCourt ? 1 : view.world->bounds().half_diagonal() / kCourtHalfDiagonal;
+  const float scale = path_scale(view);
   const std::shared_ptr<const World> start = view.world;
   const Camera camera = view.camera;
   const RenderRequest request = fragments_request(fragments_default().settings);

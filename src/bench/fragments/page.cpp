@@ -53,6 +53,7 @@ std::string fragment_bench_html(const BenchResults& results) {
   add("Sizes of the light", charts + tables("sizes"));
   add("Camera and light moving",
       tables("interactive") + (results.strip ? strip_figure(*results.strip, "Frames over their maps of fragments.") : ""));
+  add("Camera moving, light at rest", tables("temporal"));
   if (!results.pictures.empty()) page.sections.push_back(picture_section(results.pictures));
   return index_report(page);
 }

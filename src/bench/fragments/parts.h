@@ -16,5 +16,7 @@ nlohmann::ordered_json fragment_sizes(const BuiltView& view, const FragmentBench
 /// Frames a second along a path of camera and light; a strip of frames unless there is one already.
 nlohmann::ordered_json fragment_interactive(BuiltView view, const FragmentBenchOptions& options, std::optional<ColorImage>& strip,
                                             const Context& context);
+/// Rays, frames a second and errors along the same path with the light at rest, with and without what the last picture knows.
+nlohmann::ordered_json fragment_temporal(BuiltView view, const FragmentBenchOptions& options, const Context& context);
 
 }  // namespace sightline

@@ -6,6 +6,11 @@
 
 namespace sightline {
 
+float path_scale(const BuiltView& view) {
+  constexpr float kCourtHalfDiagonal = 20;
+  return view.name == "sponza-court" ? 1 : view.world->bounds().half_diagonal() / kCourtHalfDiagonal;
+}
+
 CourtWalk court_walk(int frame, int frames) {
   constexpr float kLength = 8, kSway = 0.5f, kLightReach = 6, kTurn = 0.2f;
   const float t = static_cast<float>(frame) / static_cast<float>(std::max(1, frames - 1));

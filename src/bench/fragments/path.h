@@ -1,6 +1,7 @@
 // The path "court walk" of camera and light: a pure function of the frame.
 #pragma once
 
+#include "bench/bench_shot.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -16,6 +17,9 @@ struct CourtWalk {
 /// Frame `frame` of `frames`: the camera walks 8 m along the court, swaying by half a metre and looking from side to side; the light goes
 /// from end to end, 6 m to either side of its place, and back.
 CourtWalk court_walk(int frame, int frames);
+
+/// Scene units a metre: 1 in the court, and elsewhere as many as its size is of the court's.
+float path_scale(const BuiltView& view);
 
 /// The camera moved; `scale` is scene units a metre.
 Camera walked(const Camera& camera, const CourtWalk& walk, float scale);

@@ -146,6 +146,22 @@ std::vector<BenchTable> interactive_tables(const Json& views) {
   return {table};
 }
 
+std::vector<BenchTable> temporal_tables(const Json& views) {
+  std::vector<BenchTable> tables;
+  for (const Json& view : views) {
+    BenchTable table{.title = "What the last picture knows: " + place(view),
+                     .note = fmt::format("{}, {} frames: shadow rays a frame, median seconds; errors are means of {} of them.",
+                                         text(view["path"]), text(view["frames"]), view["judged_frames"].size()),
+                     .header = {"setting", "rays, millions", "s", "frames a second", "l2", "nmse", "FLIP", "PSNR, dB"}};
+    for (const Json& row : view["rows"])
+      table.rows.push_back({text(row["name"]), fixed(row["rays"].get<double>() * 1e-6, 3), seconds(row["median_frame_seconds"]),
+                            fixed(row["frames_per_second"], 1), scientific(row["l2"]), scientific(row["nmse"]), fixed(row["flip"], 4),
+                            fixed(row["psnr"], 1)});
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
 }  // namespace
 
 std::vector<BenchTable> fragment_bench_tables(const Json& results, const std::string& part) {
@@ -155,12 +171,13 @@ std::vector<BenchTable> fragment_bench_tables(const Json& results, const std::st
   if (part == "table") return table_tables(views);
   if (part == "curve") return curve_tables(views);
   if (part == "sizes") return size_tables(views);
+  if (part == "temporal") return temporal_tables(views);
   return interactive_tables(views);
 }
 
 std::string fragment_bench_markdown(const Json& results) {
   std::string text;
-  for (const char* part : {"aims", "table", "curve", "sizes", "interactive"}) {
+  for (const char* part : {"aims", "table", "curve", "sizes", "interactive", "temporal"}) {
     for (const BenchTable& table : fragment_bench_tables(results, part)) text += markdown_table(table);
   }
   return text;
