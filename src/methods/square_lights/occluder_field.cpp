@@ -31,17 +31,17 @@ Texel texel_at(int face, int x, int y) {
 }
 
 /// Four texels around a direction and their weights. Around a corner of the cube there are three: the share of the fourth is theirs.
-struct Corners {
+struct TexelCorners {
   std::array<std::size_t, 4> texel;
   std::array<float, 4> weight;
 };
-Corners corners_at(const Vec3& direction) {
+TexelCorners corners_at(const Vec3& direction) {
   const CubePlace place = cube_place(direction);
   const float u = (place.u + 1) * (kShellSize / 2.f) - 0.5f, v = (place.v + 1) * (kShellSize / 2.f) - 0.5f;
   const int x = std::clamp(static_cast<int>(std::floor(u)), -1, kShellSize - 1);
   const int y = std::clamp(static_cast<int>(std::floor(v)), -1, kShellSize - 1);
   const float fx = std::clamp(u - static_cast<float>(x), 0.f, 1.f), fy = std::clamp(v - static_cast<float>(y), 0.f, 1.f);
-  Corners corners;
+  TexelCorners corners;
   corners.weight = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
   if (x >= 0 && y >= 0 && x + 1 < kShellSize && y + 1 < kShellSize) {
     const std::size_t first = Texel{place.face, x, y}.index();
@@ -189,7 +189,7 @@ OccluderSamples OccluderField::samples(const Vec3& position) const {
     unit[s] = scale[s] * share[s];
   }
 
-  const Corners corners = corners_at(out);
+  const TexelCorners corners = corners_at(out);
   const std::vector<Frame3>& frames = texel_frames();
   const LeastTurns turns = least_turns(
       result.frame, {&frames[corners.texel[0]], &frames[corners.texel[1]], &frames[corners.texel[2]], &frames[corners.texel[3]]});
