@@ -157,6 +157,7 @@ void replace_one(Scene& scene, const MaterialRequest& request) {
     return;
   }
   std::vector<std::string> known;
+  known.reserve(scene.materials.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) known.push_back(display_name(scene, i));
   Error error = usage_error(fmt::format("no material '{}' in the scene", name));
   const std::string nearest = nearest_name(name, known);

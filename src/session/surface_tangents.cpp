@@ -53,9 +53,11 @@ SharedArray<Vec4> tangents_of(const Mesh& mesh) {
 
 void add_missing_tangents(Scene& scene) {
   std::vector<bool> anisotropic;
+  anisotropic.reserve(scene.materials.size());
   for (const Material& material : scene.materials) anisotropic.push_back(std::visit(IsAnisotropic(), material.model));
   const auto is_anisotropic = [&](MaterialId id) { return id.index < anisotropic.size() && anisotropic[id.index]; };
   std::vector<bool> wanted;
+  wanted.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) wanted.push_back(std::ranges::any_of(mesh.materials, is_anisotropic));
   for (const Instance& instance : scene.instances) {
     if (is_anisotropic(instance.material_override)) wanted[instance.mesh.index] = true;
