@@ -78,18 +78,18 @@ TEST(FragmentHistory, LeavesFirstPicturesAlone) {
 
 TEST(FragmentHistory, EndsWithEveryChangeOfLightGeometryOrSettings) {
   const Shot start = shot_of(box_on_floor(), kWalkSize);
-  struct Change {
+  struct Edit {
     const char* name;
     void (*make)(Scene&);
   };
-  const Change changes[] = {
+  const Edit changes[] = {
       {"light moved", [](Scene& s) { std::get<RectangleLight>(s.lights[0].shape).center.x += 0.2f; }},
       {"light brighter", [](Scene& s) { std::get<RectangleLight>(s.lights[0].shape).radiance *= 2.f; }},
       {"light added", [](Scene& s) { s.lights.push_back({.name = "second", .shape = lamp({-1, 3, 0}, 0.3f), .node = {}}); }},
       {"box moved", [](Scene& s) { s.instances[1].world_from_object[3].x += 0.3f; }},
       {"box gone", [](Scene& s) { s.instances.pop_back(); }},
   };
-  for (const Change& change : changes) {
+  for (const Edit& change : changes) {
     of_walk(start, {"temporal=on"});
     Scene scene = start.world->scene();
     change.make(scene);
