@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "bench/fragments/candidates.h"
 #include "bench/fragments/maps.h"
 #include "bench/fragments/parts.h"
 #include "bench/fragments/path.h"
 #include "bench/median.h"
-#include "bench/thumbnail.h"
+#include "bench/strip.h"
 
 namespace sightline {
 namespace {
@@ -18,33 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFrames = 120, kQuickFrames = 6, kStripFrames = 6;
-
-/// Frames side by side, exposed for looking at, over their maps of levels.
-class Strip {
- public:
-  void add(const ColorImage& frame, const ColorImage& levels) {
-    if (columns_.empty()) scale_ = std::exp2(viewing_exposure(frame));
-    ColorImage exposed = frame;
-    for (Color& color : exposed.pixels) color *= scale_;
-    columns_.push_back({halved(exposed), halved(levels)});
-  }
-  std::optional<ColorImage> image() const {
-    if (columns_.empty()) return std::nullopt;
-    const int w = columns_[0][0].width, h = columns_[0][0].height;
-    ColorImage strip(w * static_cast<int>(columns_.size()), 2 * h);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      for (int row = 0; row < 2; ++row) {
-        for (int y = 0; y < h; ++y)
-          std::copy_n(&columns_[c][static_cast<std::size_t>(row)].at(0, y), w, &strip.at(static_cast<int>(c) * w, row * h + y));
-      }
-    }
-    return strip;
-  }
-
- private:
-  std::vector<std::array<ColorImage, 2>> columns_;
-  float scale_ = 1;
-};
 
 }  // namespace
 
@@ -60,7 +31,7 @@ Json fragment_interactive(BuiltView view, const FragmentBenchOptions& options, s
 
   std::vector<double> seconds, edits;
   double total = 0;
-  Strip pictures;
+  PictureStrip pictures;
   for (int frame = 0; frame < frames; ++frame) {
     const CourtWalk walk = court_walk(frame, frames);
     const Stopwatch watch;
@@ -71,7 +42,9 @@ Json fragment_interactive(BuiltView view, const FragmentBenchOptions& options, s
     const Shot shot = shoot(view, request, context);
     seconds.push_back(watch.seconds());
     total += seconds.back();
-    if (options.strip && frame % std::max(1, frames / kStripFrames) == 0) pictures.add(shot.image, level_map(view, request, context));
+    if (options.strip && frame % std::max(1, frames / kStripFrames) == 0) {
+      pictures.add({pictures.exposed(shot.image, shot.image), level_map(view, request, context)});
+    }
   }
   if (!strip) strip = pictures.image();
   std::vector<double> sorted = seconds;

@@ -2,12 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "bench/median.h"
 #include "bench/square_lights/parts.h"
-#include "bench/thumbnail.h"
+#include "bench/strip.h"
 
 namespace sightline {
 
@@ -16,36 +14,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kMovingFrames = 120, kQuickMovingFrames = 12, kEvery = 10, kQuickEvery = 4, kStripFrames = 6;
-
-/// Frames side by side over those of the reference.
-class Strip {
- public:
-  void add(const ColorImage& frame, const ColorImage& truth) {
-    if (columns_.empty()) scale_ = std::exp2(viewing_exposure(truth));
-    columns_.push_back({halved(scaled(frame)), halved(scaled(truth))});
-  }
-  std::optional<ColorImage> image() const {
-    if (columns_.empty()) return std::nullopt;
-    const int w = columns_[0][0].width, h = columns_[0][0].height;
-    ColorImage strip(w * static_cast<int>(columns_.size()), 2 * h);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      for (int row = 0; row < 2; ++row) {
-        for (int y = 0; y < h; ++y)
-          std::copy_n(&columns_[c][static_cast<std::size_t>(row)].at(0, y), w, &strip.at(static_cast<int>(c) * w, row * h + y));
-      }
-    }
-    return strip;
-  }
-
- private:
-  ColorImage scaled(ColorImage image) const {
-    for (Color& c : image.pixels) c *= scale_;
-    return image;
-  }
-
-  std::vector<std::array<ColorImage, 2>> columns_;
-  float scale_ = 1;
-};
 
 }  // namespace
 
@@ -67,7 +35,7 @@ Json square_moving(SquareStage stage, const SquareBenchShared& shared, std::opti
   Json rows = Json::array();
   std::vector<double> seconds, flips;
   std::uint64_t rays = 0;
-  Strip pictures;
+  PictureStrip pictures;  // over those of the reference
   const int compared = (frames + every - 1) / every;
   for (int frame = 0; frame < frames; ++frame) {
     const Stopwatch watch;
@@ -81,7 +49,8 @@ Json square_moving(SquareStage stage, const SquareBenchShared& shared, std::opti
     row.update(square_differences(truth.image, shot.image, surface_mask(view, light_request(1), context)));
     flips.push_back(row["flip"].get<double>());
     rows.push_back(std::move(row));
-    if (frame / every % std::max(1, compared / kStripFrames) == 0) pictures.add(shot.image, truth.image);
+    if (frame / every % std::max(1, compared / kStripFrames) == 0)
+      pictures.add({pictures.exposed(shot.image, truth.image), pictures.exposed(truth.image, truth.image)});
   }
   if (!strip) strip = pictures.image();
   return {{"view", stage.name},

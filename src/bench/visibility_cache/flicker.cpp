@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "bench/median.h"
-#include "bench/thumbnail.h"
+#include "bench/strip.h"
 #include "bench/visibility_cache/figures.h"
 #include "bench/visibility_cache/parts.h"
 #include "image/false_color.h"
@@ -31,44 +30,19 @@ Camera moved(Camera camera, float distance) {
   return camera;
 }
 
-/// Frames side by side: cached, exact (both exposed for looking at), and |difference| in false colours: yellow is half of the frame's mean.
-class Strip {
- public:
-  void add(const ColorImage& cached, const ColorImage& exact) {
-    ColorImage difference(exact.width, exact.height);
-    double mean = 0;
-    for (const Color& c : exact.pixels) mean += static_cast<double>(c.y);
-    mean = std::max(1e-9, mean / static_cast<double>(exact.pixels.size()));
-    for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
-      const Color d = glm::abs(cached.pixels[i] - exact.pixels[i]);
-      const Color encoded = false_color(static_cast<float>((d.x + d.y + d.z) / 3 / (0.5 * mean)));
-      difference.pixels[i] = {linear_from_srgb(encoded.x), linear_from_srgb(encoded.y), linear_from_srgb(encoded.z)};
-    }
-    if (columns_.empty()) scale_ = std::exp2(viewing_exposure(exact));
-    columns_.push_back({halved(scaled(cached)), halved(scaled(exact)), halved(difference)});
+/// |difference| in false colours: yellow is half of the frame's mean.
+ColorImage false_difference(const ColorImage& cached, const ColorImage& exact) {
+  ColorImage difference(exact.width, exact.height);
+  double mean = 0;
+  for (const Color& c : exact.pixels) mean += static_cast<double>(c.y);
+  mean = std::max(1e-9, mean / static_cast<double>(exact.pixels.size()));
+  for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+    const Color d = glm::abs(cached.pixels[i] - exact.pixels[i]);
+    const Color encoded = false_color(static_cast<float>((d.x + d.y + d.z) / 3 / (0.5 * mean)));
+    difference.pixels[i] = {linear_from_srgb(encoded.x), linear_from_srgb(encoded.y), linear_from_srgb(encoded.z)};
   }
-  std::optional<ColorImage> image() const {
-    if (columns_.empty()) return std::nullopt;
-    const int w = columns_[0][0].width, h = columns_[0][0].height;
-    ColorImage strip(w * static_cast<int>(columns_.size()), 3 * h);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      for (int row = 0; row < 3; ++row) {
-        for (int y = 0; y < h; ++y)
-          std::copy_n(&columns_[c][static_cast<std::size_t>(row)].at(0, y), w, &strip.at(static_cast<int>(c) * w, row * h + y));
-      }
-    }
-    return strip;
-  }
-
- private:
-  ColorImage scaled(ColorImage image) const {
-    for (Color& c : image.pixels) c *= scale_;
-    return image;
-  }
-
-  std::vector<std::array<ColorImage, 3>> columns_;
-  float scale_ = 1;
-};
+  return difference;
+}
 
 }  // namespace
 
@@ -80,7 +54,7 @@ Json cache_flicker(CacheView view, const CacheBenchOptions& options, std::option
   const float step = kStep * view.world->bounds().half_diagonal();
   const Metric& linf = find_metric("linf");
   Flicker flicker;
-  Strip pictures;
+  PictureStrip pictures;
   std::vector<double> exact_seconds, cached_seconds;
   double error = 0, traced = 0;
   for (int frame = 0; frame < frames; ++frame) {
@@ -91,7 +65,10 @@ Json cache_flicker(CacheView view, const CacheBenchOptions& options, std::option
     exact_seconds.push_back(exact.seconds), cached_seconds.push_back(cached.seconds);
     error += linf.compute(exact.image, cached.image, {}) / frames;
     traced += query_figures(cached.statistics.visibility).share_traced / frames;
-    if (frame % std::max(1, frames / kStripFrames) == 0) pictures.add(cached.image, exact.image);
+    if (frame % std::max(1, frames / kStripFrames) == 0) {
+      pictures.add({pictures.exposed(cached.image, exact.image), pictures.exposed(exact.image, exact.image),
+                    false_difference(cached.image, exact.image)});
+    }
   }
   if (!strip) strip = pictures.image();
   return {{"view", view.name},

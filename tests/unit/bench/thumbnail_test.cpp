@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/strip.h"
+
 namespace sightline {
 namespace {
 
@@ -24,6 +26,20 @@ TEST(Thumbnail, IsAtMostAsWideAsAsked) {
 TEST(Thumbnail, ViewingExposureBringsTheMeanToAFifth) {
   EXPECT_NEAR(viewing_exposure(ColorImage(2, 2, Color(0.8f))), -2, 1e-4);
   EXPECT_EQ(viewing_exposure(ColorImage(2, 2, Color(0))), 0);
+}
+
+TEST(PictureStrip, ColumnsStandSideBySideAtHalfSizeAndOneExposure) {
+  PictureStrip strip;
+  EXPECT_FALSE(strip.image());
+  const ColorImage bright(4, 2, Color(8)), dark(4, 2, Color(0.5f));
+  strip.add({strip.exposed(bright, bright), dark});
+  strip.add({strip.exposed(dark, dark), bright});
+  const ColorImage image = strip.image().value();
+  ASSERT_EQ(image.width, 4);
+  ASSERT_EQ(image.height, 2);
+  EXPECT_FLOAT_EQ(image.at(0, 0).x, 16 * image.at(2, 0).x);
+  EXPECT_FLOAT_EQ(image.at(1, 1).x, 0.5f);
+  EXPECT_FLOAT_EQ(image.at(3, 1).x, 8);
 }
 
 }  // namespace
