@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/core/stopwatch.h"
 #include "methods/method.h"
 #include "scene/load/load.h"
 #include "session/memory_needs.h"
 #include "session/render.h"
 #include "session/setup.h"
 #include "session/statistics.h"
-#include "session/stopwatch.h"
 #include "sightline/sightline.h"
 #include "visibility/visibility.h"
 #include "world/world.h"
