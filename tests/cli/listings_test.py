@@ -255,8 +255,8 @@ class Bench(ProgramTest):
         self.assertGreaterEqual(page.count("<svg"), 2)
         self.assertNotRegex(page, r"(src|href)=\"(?!data:)")
         self.assertIn("### Monte Carlo", (self.folder / "a.md").read_text())
-        # That of the view, whose light has a side of 1, and that of the other size.
-        self.assertEqual(len(list((self.folder / "kept").iterdir())), 2)
+        # That of the view, whose light has a side of 1, that of the other size, and three frames of the walk.
+        self.assertEqual(len(list((self.folder / "kept").iterdir())), 2 + 3)
 
     def test_what_the_fragments_suite_refuses(self):
         self.fails(2, "bench", "fragment", says="fragments")
