@@ -28,6 +28,7 @@ TextureId Builder::find_texture(const Parameter& parameter, bool spectrum) {
   const auto& textures = spectrum ? spectrum_textures_ : float_textures_;
   if (const auto found = textures.find(name); found != textures.end()) return found->second;
   std::vector<std::string> known;
+  known.reserve(textures.size());
   for (const auto& [known_name, id] : textures) known.push_back(known_name);
   const std::string nearest = nearest_name(name, known);
   warn(parameter.place, fmt::format("there is no {} texture '{}'{}; mid-grey is used", spectrum ? "spectrum" : "float", shown(name),
