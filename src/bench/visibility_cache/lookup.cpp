@@ -70,6 +70,7 @@ Replay replay(const std::vector<RecordedScope>& scopes, const CacheView& view, c
   const VisibilityInfo& info = find_visibility("cached");
   SettingsValue value = info.settings;
   for (const std::string& setting : settings) value.apply(setting);
+  value.apply("importance=0");  // what is a ray whatever the table holds is no look-up
   const std::unique_ptr<Visibility> visibility = info.make(view.world, value, context);
   visibility->begin_pass({0, 0}, context);
   const std::unique_ptr<VisibilityWorker> worker = visibility->worker();
