@@ -16,7 +16,7 @@ const std::vector<BenchSuite>& bench_suites() {
        fragment_bench_parts,
        {"--part", "--html", "--strip", "--truth-samples", "--rounds", "--cache-dir"},
        run_fragments_bench},
-      {"visibility-cache", cache_bench_parts, {"--part", "--html", "--strip", "--ce", "--spp"}, run_visibility_cache_bench},
+      {"visibility-cache", cache_bench_parts, {"--part", "--html", "--strip", "--ce", "--spp", "--set"}, run_visibility_cache_bench},
       {"square-lights", square_bench_parts, {"--part", "--html", "--strip", "--truth-samples", "--bake-dir"}, run_square_lights_bench},
   };
   return table;
@@ -28,6 +28,7 @@ const std::vector<BenchOption>& optional_bench_options() {
       {"--html", [](const BenchCommand& c) { return !c.html.empty(); }},
       {"--strip", [](const BenchCommand& c) { return !c.strip.empty(); }},
       {"--ce", [](const BenchCommand& c) { return !c.ce.empty(); }},
+      {"--set", [](const BenchCommand& c) { return !c.settings.empty(); }},
       {"--spp", [](const BenchCommand& c) { return !c.spp.empty(); }},
       {"--truth-samples", [](const BenchCommand& c) { return c.truth_samples.has_value(); }},
       {"--rounds", [](const BenchCommand& c) { return c.rounds.has_value(); }},

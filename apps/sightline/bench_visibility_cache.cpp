@@ -14,6 +14,7 @@ int run_visibility_cache_bench(const CommandLine& line, Context& context) {
   for (const std::string& text : listed(command.ce)) options.ce.push_back(parse_real("--ce", text, {.minimum = 1e-3, .maximum = 1e6}));
   for (const std::string& text : listed(command.spp))
     options.spp.push_back(static_cast<int>(parse_integer("--spp", text, {.minimum = 1, .maximum = 65536})));
+  options.settings = command.settings;
   options.size_px = command.size_px;
   options.quick = command.quick;
   options.strip = !command.strip.empty();

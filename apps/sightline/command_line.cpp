@@ -235,6 +235,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
   add_list("--part", bench.parts, fmt::format("{} (default: all)", fmt::join(parts, "; ")), "LIST");
   add_list("--ce", bench.ce, help("--ce", "C_E of the curves (default: 4,8,16,36,64)"), "LIST");
   add_list("--spp", bench.spp, help("--spp", "samples a pixel of curves and shadow maps (default: 1,9,16)"), "LIST");
+  add_list("--set", bench.settings, help("--set", "a setting of the curves' cached pictures; repeatable"), "NAME=VALUE");
   app.add_option("--json", bench.json, "results as JSON (- is stdout)")->type_name("FILE");
   app.add_option("--markdown", bench.markdown, "results as a Markdown table")->type_name("FILE");
   app.add_option("--html", bench.html, help("--html", "charts, tables and pictures as one page"))->type_name("FILE");

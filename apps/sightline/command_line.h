@@ -61,7 +61,7 @@ struct InfoCommand {
 
 struct BenchCommand {
   std::vector<std::string> suites, views;
-  std::vector<std::string> parts, ce, spp;
+  std::vector<std::string> parts, ce, spp, settings;
   std::optional<int> truth_samples, rounds;
   std::string cache_directory;
   std::optional<std::string> bake_directory;

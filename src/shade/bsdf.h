@@ -37,6 +37,15 @@ class Bsdf {
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const {
     return std::visit([&](const auto& m) { return m.delta_lobes(wo, mode); }, model_);
   }
+  /// For vector code that evaluates towards many directions, where the model has that shape.
+  std::optional<SurfaceLobes> lobes(const Vec3& wo) const {
+    return std::visit(
+        [&](const auto& m) -> std::optional<SurfaceLobes> {
+          if constexpr (requires { m.lobes(wo); }) return m.lobes(wo);
+          return std::nullopt;
+        },
+        model_);
+  }
   /// Tells the model a direction that many evaluations will share. Changes no value, only how often it is worked out.
   void prepare(const Vec3& w) {
     if (CoatedDiffuse* coated = std::get_if<CoatedDiffuse>(&model_)) coated->prepare(w);

@@ -76,6 +76,23 @@ DeltaLobes CoatedDiffuse::delta_lobes(const Vec3& wo, TransportMode) const {
   return lobes;
 }
 
+SurfaceLobes CoatedDiffuse::lobes(const Vec3& wo) const {
+  const float reflected_o = coat_reflectance(std::fabs(wo.z)), specular = specular_probability(reflected_o);
+  SurfaceLobes lobes;
+  lobes.interface = SurfaceLobes::Interface::dielectric;
+  lobes.has_ggx = !ggx_.is_smooth();
+  lobes.wo = upper_side(wo);
+  lobes.base = base_ * (1 - reflected_o);
+  lobes.eta = Color(eta_);
+  lobes.ggx = ggx_;
+  lobes.lambert_share = 1 - specular, lobes.ggx_share = specular;
+  if (lobes.has_ggx)
+    lobes.albedo = ggx_dielectric_albedo_nodes(ggx_, eta_);
+  else
+    lobes.albedo.fill(1);
+  return lobes;
+}
+
 Color CoatedDiffuse::albedo() const {
   // Under uniform light: the mean reflectance of the coat and what comes back through it.
   return glm::clamp(Color(1 - mean_transmittance_) + base_ * (mean_transmittance_ * mean_transmittance_), 0.f, 1.f);

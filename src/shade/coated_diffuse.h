@@ -5,6 +5,7 @@
 
 #include "shade/bsdf_types.h"
 #include "shade/ggx.h"
+#include "shade/surface_lobes.h"
 
 namespace sightline {
 
@@ -20,6 +21,7 @@ class CoatedDiffuse {
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
+  SurfaceLobes lobes(const Vec3& wo) const;
   /// Remembers what the coat reflects of unit `w`: for a direction that many evaluations share.
   void prepare(const Vec3& w);
   Color albedo() const;

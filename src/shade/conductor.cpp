@@ -39,6 +39,17 @@ std::optional<BsdfSample> Conductor::sample(const Vec3& wo, float, const Vec2& u
   return s;
 }
 
+SurfaceLobes Conductor::lobes(const Vec3& wo) const {
+  SurfaceLobes lobes;
+  lobes.interface = SurfaceLobes::Interface::conductor;
+  lobes.has_ggx = !ggx_.is_smooth();
+  lobes.wo = upper_side(wo);
+  lobes.tint = tint_, lobes.eta = eta_, lobes.k = k_;
+  lobes.ggx = ggx_;
+  lobes.lambert_share = 0, lobes.ggx_share = 1;
+  return lobes;
+}
+
 Color Conductor::albedo() const {
   // Normal incidence stands for the whole: metals change little until grazing angles.
   return glm::clamp(tint_ * fresnel_conductor(1, eta_, k_), 0.f, 1.f);

@@ -37,15 +37,16 @@ class Ggx {
   }
   /// G1(wo) / (2 |zo|).
   float masking_over_cosine(const Vec3& wo) const { return 1 / (std::fabs(wo.z) + stretch(wo)); }
+  /// s(w).
+  float stretch(const Vec3& w) const {
+    const float x = alpha_.x * w.x, y = alpha_.y * w.y;
+    return std::sqrt(x * x + y * y + w.z * w.z);
+  }
   /// wo.z >= 0.
   Vec3 sample_visible(const Vec3& wo, const Vec2& u) const { return sample_ggx_visible_normal(wo, alpha_, u); }
 
  private:
   static constexpr float kLeast = 1e-4f;  // keeps D and the densities within float range
-  float stretch(const Vec3& w) const {
-    const float x = alpha_.x * w.x, y = alpha_.y * w.y;
-    return std::sqrt(x * x + y * y + w.z * w.z);
-  }
   Vec2 alpha_{kLeast};
   bool smooth_ = true;
 };

@@ -78,6 +78,24 @@ Color ggx_schlick_albedo(const Color& f0, float cos_theta, const Ggx& ggx) {
   return f0 * value(0) + (1.f - f0) * value(1);
 }
 
+SurfaceLobes::Nodes ggx_dielectric_albedo_nodes(const Ggx& ggx, float eta) {
+  const AxisPoint a = alpha_axis(ggx), e = eta_axis(eta);
+  SurfaceLobes::Nodes nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto plane = [&](int eta_index) { return a.mix(kDielectric[eta_index][a.low][i], kDielectric[eta_index][a.low + 1][i]); };
+    nodes[i] = e.mix(plane(e.low), plane(e.low + 1));
+  }
+  return nodes;
+}
+
+void ggx_schlick_albedo_nodes(const Ggx& ggx, SurfaceLobes::Nodes& f0_part, SurfaceLobes::Nodes& rest) {
+  const AxisPoint a = alpha_axis(ggx);
+  for (std::size_t i = 0; i < f0_part.size(); ++i) {
+    f0_part[i] = a.mix(kSchlick[a.low][i][0], kSchlick[a.low + 1][i][0]);
+    rest[i] = a.mix(kSchlick[a.low][i][1], kSchlick[a.low + 1][i][1]);
+  }
+}
+
 Color ggx_schlick_mean_albedo(const Color& f0, const Ggx& ggx) {
   // The cosine-weighted mean of (1 - cos)^5 is 1/21.
   if (ggx.is_smooth()) return f0 + (1.f - f0) / 21.f;

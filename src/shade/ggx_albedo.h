@@ -3,6 +3,7 @@
 
 #include "base/math/vec.h"
 #include "shade/ggx.h"
+#include "shade/surface_lobes.h"
 
 namespace sightline {
 
@@ -19,6 +20,11 @@ float ggx_dielectric_mean_albedo(const Ggx& ggx, float eta);
 /// The same for a GGX surface with Schlick's Fresnel.
 Color ggx_schlick_albedo(const Color& f0, float cos_theta, const Ggx& ggx);
 Color ggx_schlick_mean_albedo(const Color& f0, const Ggx& ggx);
+
+/// The tables' entries for one surface, for code that looks up many cosines: of the dielectric albedo over Fresnel's reflectance, and the
+/// parts that f0 and 1 - f0 multiply. Not for smooth surfaces.
+SurfaceLobes::Nodes ggx_dielectric_albedo_nodes(const Ggx& ggx, float eta);
+void ggx_schlick_albedo_nodes(const Ggx& ggx, SurfaceLobes::Nodes& f0_part, SurfaceLobes::Nodes& rest);
 
 /// The numbers behind the tables, by quadrature: how they were made, and what they are tested against. For Schlick's Fresnel the albedo is
 /// f0 x + (1 - f0) y.

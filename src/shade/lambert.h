@@ -6,6 +6,7 @@
 
 #include "base/sample/warp.h"
 #include "shade/bsdf_types.h"
+#include "shade/surface_lobes.h"
 
 namespace sightline {
 
@@ -26,6 +27,12 @@ struct Lambert {
     if (wo.z < 0) s.wi.z = -s.wi.z;
     s.weight = reflectance;
     return s;
+  }
+  SurfaceLobes lobes(const Vec3& wo) const {
+    SurfaceLobes lobes;
+    lobes.wo = {wo.x, wo.y, std::fabs(wo.z)};
+    lobes.base = reflectance;
+    return lobes;
   }
   DeltaLobes delta_lobes(const Vec3&, TransportMode = TransportMode::radiance) const { return {}; }
   Color albedo() const { return glm::clamp(reflectance, 0.f, 1.f); }

@@ -78,6 +78,24 @@ DeltaLobes MetallicRoughness::delta_lobes(const Vec3& wo, TransportMode) const {
   return lobes;
 }
 
+std::optional<SurfaceLobes> MetallicRoughness::lobes(const Vec3& wo) const {
+  if (ggx_.is_smooth()) return std::nullopt;
+  SurfaceLobes lobes;
+  lobes.interface = SurfaceLobes::Interface::schlick;
+  lobes.has_ggx = true;
+  lobes.wo = upper_side(wo);
+  lobes.f0 = f0_;
+  lobes.ggx = ggx_;
+  lobes.lambert_share = 0, lobes.ggx_share = 1;
+  if (!is_black(diffuse_)) {
+    const Color specular_o = specular_albedo(std::fabs(wo.z));
+    lobes.base = diffuse_ * (1.f - specular_o);
+    lobes.ggx_share = specular_probability(specular_o), lobes.lambert_share = 1 - lobes.ggx_share;
+  }
+  ggx_schlick_albedo_nodes(ggx_, lobes.albedo, lobes.albedo_rest);
+  return lobes;
+}
+
 Color MetallicRoughness::albedo() const {
   // Under uniform light, with E the mean albedo of the GGX part: E + (1 - E)² diffuse.
   const Color mean_specular = ggx_schlick_mean_albedo(f0_, ggx_);

@@ -5,6 +5,7 @@
 
 #include "shade/bsdf_types.h"
 #include "shade/ggx.h"
+#include "shade/surface_lobes.h"
 
 namespace sightline {
 
@@ -21,6 +22,8 @@ class MetallicRoughness {
   BsdfEval evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode = TransportMode::radiance) const;
   std::optional<BsdfSample> sample(const Vec3& wo, float u_lobe, const Vec2& u, TransportMode mode = TransportMode::radiance) const;
   DeltaLobes delta_lobes(const Vec3& wo, TransportMode mode = TransportMode::radiance) const;
+  /// None if smooth: Schlick's term is no table then.
+  std::optional<SurfaceLobes> lobes(const Vec3& wo) const;
   Color albedo() const;
   /// A mirror-like metal.
   bool is_delta() const { return ggx_.is_smooth() && is_black(diffuse_); }

@@ -54,6 +54,7 @@ Json fragment_temporal(BuiltView view, const FragmentBenchOptions& options, cons
   view.size_px = options.size_px.value_or(options.quick ? IVec2(160, 120) : IVec2(640, 480));
   context.info(fmt::format("bench fragments: path of the camera alone, {}", view.name));
   std::vector<Camera> cameras;
+  cameras.reserve(static_cast<std::size_t>(frames));
   for (int frame = 0; frame < frames; ++frame)
     cameras.push_back(walked(view.camera, court_walk(frame, options.quick ? frames : kWalkFrames), path_scale(view)));
 

@@ -24,6 +24,7 @@ constexpr std::array<FigureSet, 12> kFigures = {{{.view = "armadillo-sky", .ligh
 
 std::vector<std::string> figure_views() {
   std::vector<std::string> views;
+  views.reserve(kFigures.size());
   for (const FigureSet& figures : kFigures) views.emplace_back(figures.view);
   return views;
 }

@@ -52,10 +52,10 @@ void thin_out(Mesh& ground) {
   std::vector<Vec3> positions;
   std::vector<UVec3> triangles;
   for (std::uint32_t i = 0; i < kQuickGround * kQuickGround; ++i) {
-    const float u = static_cast<float>(i % kQuickGround) / (kQuickGround - 1),
-                v = static_cast<float>(i / kQuickGround) / (kQuickGround - 1);
+    const std::uint32_t row = i / kQuickGround;
+    const float u = static_cast<float>(i % kQuickGround) / (kQuickGround - 1), v = static_cast<float>(row) / (kQuickGround - 1);
     positions.push_back(lower + Vec3(u, 0.5f, v) * edge);
-    if (i % kQuickGround + 1 == kQuickGround || i / kQuickGround + 1 == kQuickGround) continue;
+    if (i % kQuickGround + 1 == kQuickGround || row + 1 == kQuickGround) continue;
     triangles.emplace_back(i, i + kQuickGround, i + 1);
     triangles.emplace_back(i + 1, i + kQuickGround, i + kQuickGround + 1);
   }
@@ -100,7 +100,7 @@ std::optional<std::filesystem::path> data_file(const SquareBenchOptions& options
   const std::string folders = options.data.string();
   for (std::size_t begin = 0; begin <= folders.size();) {
     const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    const std::filesystem::path file = std::filesystem::path(folders.substr(begin, end - begin)) / name;
+    std::filesystem::path file = std::filesystem::path(folders.substr(begin, end - begin)) / name;
     std::error_code ignored;
     if (end > begin && std::filesystem::exists(file, ignored)) return file;
     begin = end + 1;

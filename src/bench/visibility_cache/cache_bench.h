@@ -14,14 +14,15 @@
 namespace sightline {
 
 struct CacheBenchOptions {
-  std::filesystem::path data;      ///< see load_bench_view
-  std::vector<std::string> views;  ///< instead of each part's own
-  std::vector<std::string> parts;  ///< of cache_bench_parts(); empty = all
-  std::vector<double> ce;          ///< C_E of the curves; empty = 4, 8, 16, 36, 64
-  std::vector<int> spp;            ///< samples a pixel of the curves; empty = 1, 9, 16
-  std::optional<IVec2> size_px;    ///< instead of the views' own 1280x960
-  bool strip = false;              ///< the caller wants the strip of the results
-  bool quick = false;              ///< small pictures and few repetitions: not to be quoted
+  std::filesystem::path data;         ///< see load_bench_view
+  std::vector<std::string> views;     ///< instead of each part's own
+  std::vector<std::string> parts;     ///< of cache_bench_parts(); empty = all
+  std::vector<double> ce;             ///< C_E of the curves; empty = 4, 8, 16, 36, 64
+  std::vector<std::string> settings;  ///< name=value, of the curves' cached pictures
+  std::vector<int> spp;               ///< samples a pixel of the curves; empty = 1, 9, 16
+  std::optional<IVec2> size_px;       ///< instead of the views' own 1280x960
+  bool strip = false;                 ///< the caller wants the strip of the results
+  bool quick = false;                 ///< small pictures and few repetitions: not to be quoted
 };
 
 /// curves, rivals, lookup, flicker, ablations.

@@ -48,11 +48,15 @@ Json cache_curves(const CacheView& view, const CacheBenchOptions& options, std::
                {"triangles", instanced_triangle_count(view.world->scene())},
                {"light_samples", view.light_samples},
                {"max_bounces", view.max_bounces},
+               {"settings", options.settings},
                {"samples", Json::array()}};
   for (const int spp : samples) {
     context.info(fmt::format("bench visibility-cache: curves, {}, {} samples a pixel", view.name, spp));
     std::vector<ShotRequest> requests = {{.visibility = "exact", .spp = spp}};
-    for (const double ce : edges) requests.push_back({.settings = {fmt::format("ce={}", ce)}, .spp = spp});
+    for (const double ce : edges) {
+      requests.push_back({.settings = {fmt::format("ce={}", ce)}, .spp = spp});
+      requests.back().settings.insert(requests.back().settings.end(), options.settings.begin(), options.settings.end());
+    }
     const std::vector<Shot> shots = shoot_by_turns(view, requests, options.quick ? 1 : 0, context);
     const Shot& exact = shots.front();
     const std::vector<std::uint8_t> mask = surface_mask(view, spp, {}, context);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <variant>
 
+#include "base/core/grid_index.h"
 #include "base/parallel/parallel.h"
 #include "methods/square_lights/hemisphere_disk.h"
 #include "methods/square_lights/sharp_lobe.h"
@@ -57,8 +58,8 @@ class Slice {
     for (int y = 0; y < rows; ++y) {
       for (int x = 0; x < kCells; ++x) {
         const Color mean = cell(x, y);
-        means[static_cast<std::size_t>(y * kCells + x)] = mean;
-        if (mirrored) means[static_cast<std::size_t>((kCells - 1 - y) * kCells + x)] = mean;
+        means[grid_index(x, y, kCells)] = mean;
+        if (mirrored) means[grid_index(x, kCells - 1 - y, kCells)] = mean;
       }
     }
   }
@@ -77,8 +78,8 @@ class Slice {
     if (lobe_) f -= SharpLobe::value(*lobe_, wi);
     return is_finite(f) ? f : Color(0);
   }
-  const Color& at(int x, int y) const { return lattice_[static_cast<std::size_t>((y + 1) * kStride + x + 1)]; }
-  Color& at(int x, int y) { return lattice_[static_cast<std::size_t>((y + 1) * kStride + x + 1)]; }
+  const Color& at(int x, int y) const { return lattice_[grid_index(x + 1, y + 1, kStride)]; }
+  Color& at(int x, int y) { return lattice_[grid_index(x + 1, y + 1, kStride)]; }
 
   void sample_lattice(int rows, bool mirrored) {
     lattice_.fill(Color(0));
@@ -172,7 +173,7 @@ Cells mirror(const Cells& means, bool columns, bool rows) {
   for (int y = 0; y < kCells; ++y) {
     for (int x = 0; x < kCells; ++x) {
       const int from_x = columns ? kCells - 1 - x : x, from_y = rows ? kCells - 1 - y : y;
-      result[static_cast<std::size_t>(y * kCells + x)] = means[static_cast<std::size_t>(from_y * kCells + from_x)];
+      result[grid_index(x, y, kCells)] = means[grid_index(from_x, from_y, kCells)];
     }
   }
   return result;
@@ -187,10 +188,10 @@ void sum_areas(const Cells& means, float* corners) {
     float* out = corners + static_cast<std::size_t>(y + 1) * kCorners * 4;
     std::fill_n(out, 4, 0.f);
     for (int x = 0; x < kCells; ++x) {
-      const Color& mean = means[static_cast<std::size_t>(y * kCells + x)];
+      const Color& mean = means[grid_index(x, y, kCells)];
       const double bright = luminance(mean);
       row += glm::dvec4(glm::dvec3(mean), bright * bright) * static_cast<double>(kCellSize * kCellSize);
-      glm::dvec4& sum = above[static_cast<std::size_t>(x + 1)];
+      glm::dvec4& sum = above[static_cast<std::size_t>(x) + 1];
       sum += row;
       out += 4;
       for (int c = 0; c < 4; ++c) out[c] = static_cast<float>(sum[c]);
@@ -294,7 +295,7 @@ BrdfTable::Slices BrdfTable::slices(const Vec3& wo) const {
   const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
   for (int j = 0; j < 2; ++j) {
     for (int i = 0; i < 2; ++i) {
-      add(static_cast<std::size_t>((y0 + j) * kViews + x0 + i), (i ? fx : 1 - fx) * (j ? fy : 1 - fy));
+      add(grid_index(x0 + i, y0 + j, kViews), (i ? fx : 1 - fx) * (j ? fy : 1 - fy));
     }
   }
   return result;

@@ -36,7 +36,7 @@ SquareKernel::SquareKernel(const World& world, const View& view, const SquareBak
       radiance_(radiance),
       seed_(seed),
       simple_(all_simple(world.scene(), !radiance.empty())) {
-  const auto most = static_cast<std::size_t>(Frame::kTileSize * Frame::kTileSize);
+  const auto most = static_cast<std::size_t>(Frame::kTileSize) * Frame::kTileSize;
   for (auto* numbers : {&pixel_, &key_, &index_}) numbers->resize(most);
   for (auto* numbers : {&u0_, &u1_, &u2_, &u3_}) numbers->resize(most);
   inside_.resize(most);

@@ -266,8 +266,10 @@ void LocalLight::lights_at(const Vec3& position, std::span<PatchLight> lights) c
     // Mean direction of the part, from its quarters.
     Vec3 mean(0);
     for (int q = 0; q < 4; ++q) {
+      const std::size_t row = i / sphere_edge_;
+      const int lower = q / 2;
       const Vec2 p = sample_concentric_disk({(static_cast<float>(i % sphere_edge_) + 0.25f + 0.5f * static_cast<float>(q % 2)) / edge,
-                                             (static_cast<float>(i / sphere_edge_) + 0.25f + 0.5f * static_cast<float>(q / 2)) / edge});
+                                             (static_cast<float>(row) + 0.25f + 0.5f * static_cast<float>(lower)) / edge});
       const float drop = glm::dot(p, p) * height, k = std::sqrt(height * (2 - drop));
       mean += Vec3(p.x * k, p.y * k, 1 - drop);
     }

@@ -17,7 +17,8 @@ constexpr float kBefore = 1e-3f;
 
 /// Where ray `k` of a patch goes, from `origin`: a point of a parallelogram, or of the disk that a sphere shows.
 Vec3 target(const LocalLight& light, std::size_t patch, const PatchLight& seen, const Vec3& origin, int k) {
-  const float a = (2 * static_cast<float>(k % kEdge) + 1) / kEdge - 1, b = (2 * static_cast<float>(k / kEdge) + 1) / kEdge - 1;
+  const int row = k / kEdge;
+  const float a = (2 * static_cast<float>(k % kEdge) + 1) / kEdge - 1, b = (2 * static_cast<float>(row) + 1) / kEdge - 1;
   if (!light.is_sphere()) {
     const AreaPatch& p = light.patches()[patch];
     return p.center + a * p.half_u + b * p.half_v;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/core/grid_index.h"
 #include "methods/square_lights/hemisphere_disk.h"
 
 namespace sightline::square_lights {
@@ -18,9 +19,9 @@ void sum_up(TableView table, CornerSums& corners) {
   for (int y = 0; y < kTableSize; ++y) {
     float row = 0;
     for (int x = 0; x < kTableSize; ++x) {
-      const float d = decode_distance(table[static_cast<std::size_t>(y * kTableSize + x)]);
+      const float d = decode_distance(table[grid_index(x, y, kTableSize)]);
       row += std::clamp(0.5f + d / cell, 0.f, 1.f);
-      const auto at = static_cast<std::size_t>((y + 1) * kTableCorners + x + 1);
+      const auto at = grid_index(x + 1, y + 1, kTableCorners);
       corners[at] = corners[at - kTableCorners] + row;
     }
   }
@@ -31,7 +32,7 @@ float corner_at(const CornerSums& corners, float x, float y) {
               gy = std::clamp((y + 1) * 0.5f * kTableSize, 0.f, float{kTableSize});
   const int ix = std::min(static_cast<int>(gx), kTableSize - 1), iy = std::min(static_cast<int>(gy), kTableSize - 1);
   const float tx = gx - static_cast<float>(ix), ty = gy - static_cast<float>(iy);
-  const auto at = static_cast<std::size_t>(iy * kTableCorners + ix);
+  const auto at = grid_index(ix, iy, kTableCorners);
   return (1 - ty) * ((1 - tx) * corners[at] + tx * corners[at + 1]) +
          ty * ((1 - tx) * corners[at + kTableCorners] + tx * corners[at + kTableCorners + 1]);
 }

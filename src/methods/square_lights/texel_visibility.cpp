@@ -17,7 +17,7 @@ constexpr std::size_t kBatch = 4096;
 
 TexelDirections texel_directions(int size, const Mat3& world_from_environment) {
   TexelDirections result;
-  result.texels = static_cast<std::size_t>(kCubeFaces * size * size);
+  result.texels = static_cast<std::size_t>(kCubeFaces) * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   const std::size_t points = result.texels * kTexelPoints;
   result.direction.resize(points), result.solid_angle.resize(points);
   const int fine = size * kSubTexels;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sightline {
 namespace {
@@ -68,21 +69,30 @@ Color virtual_light_contribution(const EyeSample& eye, const VirtualPointLights&
 
 void add_samples(const EyeSample& eye, std::uint32_t eye_index, const LightSampleBatch& lights, std::size_t first, std::size_t count,
                  std::uint32_t number, const SampleWeights& weights, Contributions& out) {
-  if (eye.bsdf.lambert()) return append_samples(eye, eye_index, lights, first, count, number, weights, out);
   const EyeView view(eye);
+  if (const std::optional<SurfaceLobes> lobes = eye.bsdf.lobes(view.wo_local))
+    return append_samples(eye, *lobes, eye_index, lights, first, count, number, weights, out);
   for (std::size_t k = 0; k < count; ++k)
     append(contribution_of_sample(view, lights, first + k, weights), eye_index, number + static_cast<std::uint32_t>(k), out);
 }
 
 void add_virtual_lights(const EyeSample& eye, std::uint32_t eye_index, const VirtualPointLights& lights,
-                        std::span<const std::uint32_t> general, Contributions& out) {
+                        std::span<const std::uint32_t> general, const SentRadiance& sent, Contributions& out) {
   const EyeView view(eye);
-  if (eye.bsdf.lambert()) {
-    append_virtual_lights(eye, eye_index, lights, out);
-    for (const std::uint32_t j : general) append(contribution_of_virtual_light(view, lights, j), eye_index, j, out);
+  const std::optional<SurfaceLobes> lobes = eye.bsdf.lobes(view.wo_local);
+  if (!lobes) {
+    for (std::uint32_t j = 0; j < lights.size; ++j) append(contribution_of_virtual_light(view, lights, j), eye_index, j, out);
     return;
   }
-  for (std::uint32_t j = 0; j < lights.size; ++j) append(contribution_of_virtual_light(view, lights, j), eye_index, j, out);
+  append_virtual_lights(eye, *lobes, eye_index, lights, out);
+  const std::size_t begin = out.size;
+  append_unit_lights(eye, *lobes, eye_index, lights, general, out);
+  const std::size_t end = out.size;
+  out.size = begin;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t place = out.light[i];
+    append(load(out.color, i) * load(sent.radiance, place * sent.stride + eye_index), eye_index, general[place], out);
+  }
 }
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "methods/visibility_cache/eye_lanes.h"
+#include "methods/visibility_cache/vpl_radiance.h"
 
 namespace sightline {
 
@@ -16,8 +17,9 @@ Color virtual_light_contribution(const EyeSample& eye, const VirtualPointLights&
 /// Appends light samples [first, first + count) at `eye`, numbered from `number` on, in vectors where the material allows.
 void add_samples(const EyeSample& eye, std::uint32_t eye_index, const LightSampleBatch& lights, std::size_t first, std::size_t count,
                  std::uint32_t number, const SampleWeights& weights, Contributions& out);
-/// Appends all virtual lights at `eye`; `general` lists those that are no Lamberts.
+/// Appends all virtual lights at `eye`; `general` lists those that are no Lamberts, and `sent` has what they send, `eye` being the point
+/// `eye_index` there.
 void add_virtual_lights(const EyeSample& eye, std::uint32_t eye_index, const VirtualPointLights& lights,
-                        std::span<const std::uint32_t> general, Contributions& out);
+                        std::span<const std::uint32_t> general, const SentRadiance& sent, Contributions& out);
 
 }  // namespace sightline

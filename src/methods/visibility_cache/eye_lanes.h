@@ -1,13 +1,15 @@
-// What light samples and virtual lights would bring to Lambert eye points, 16 at a time.
+// What light samples and virtual lights would bring to eye points whose BSDF has lobes (shade/surface_lobes.h), 16 at a time.
 //
 // The scalar definition, for every BSDF, is in contributions.cpp; tests compare the two.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "methods/visibility_cache/eye_sample.h"
 #include "methods/visibility_cache/virtual_point_lights.h"
 #include "shade/light_table.h"
+#include "shade/surface_lobes.h"
 
 namespace sightline {
 
@@ -33,13 +35,18 @@ struct SampleWeights {
   float mis_bsdf = 0;   ///< samples drawn from the BSDF; 0 = no other technique
 };
 
-/// Appends the light samples [first, first + count) of `lights` at `eye`, whose BSDF is a Lambert. Up to kLanes - 1 lanes behind the last
-/// are read, and must be there. Lights are numbered from `number` on.
-void append_samples(const EyeSample& eye, std::uint32_t eye_index, const LightSampleBatch& lights, std::size_t first, std::size_t count,
-                    std::uint32_t number, const SampleWeights& weights, Contributions& out);
+/// Appends the light samples [first, first + count) of `lights` at `eye`, whose BSDF has `lobes` seen from wo. Up to kLanes - 1 lanes
+/// behind the last are read, and must be there. Lights are numbered from `number` on.
+void append_samples(const EyeSample& eye, const SurfaceLobes& lobes, std::uint32_t eye_index, const LightSampleBatch& lights,
+                    std::size_t first, std::size_t count, std::uint32_t number, const SampleWeights& weights, Contributions& out);
 
-/// Appends the virtual lights that are Lamberts at `eye`, whose BSDF is one.
-void append_virtual_lights(const EyeSample& eye, std::uint32_t eye_index, const VirtualPointLights& lights, Contributions& out);
+/// Appends the virtual lights that are Lamberts at `eye`, whose BSDF has `lobes`.
+void append_virtual_lights(const EyeSample& eye, const SurfaceLobes& lobes, std::uint32_t eye_index, const VirtualPointLights& lights,
+                           Contributions& out);
+/// The same for the lights listed in `which`, but as if each sent radiance 1 on both of its sides, and with their places in that list for
+/// numbers.
+void append_unit_lights(const EyeSample& eye, const SurfaceLobes& lobes, std::uint32_t eye_index, const VirtualPointLights& lights,
+                        std::span<const std::uint32_t> which, Contributions& out);
 
 /// Sum of weight[i] * color[i] over [begin, end).
 Color weighted_sum(const Contributions& contributions, const float* weights, std::size_t begin, std::size_t end);

@@ -290,10 +290,11 @@ void EyeKernel::add_bsdf_sample(const EyeSample& e, std::uint32_t eye_index, flo
 void EyeKernel::shade_virtual(EyeRange chunk, const EyePass& pass, PassStatistics& statistics) {
   const VirtualPointLights& lights = pass.virtual_lights;
   contributions_.size = 0;
-  for (std::size_t k = chunk.first; k < chunk.second; ++k)
-    add_virtual_lights(eye(k), static_cast<std::uint32_t>(k - chunk.first), lights, pass.general_virtual_lights, contributions_);
-
   set_eye_ends(chunk);
+  send_radiance(lights, pass.general_virtual_lights, queries_.eye.position, queries_.eye.size, sent_);
+  for (std::size_t k = chunk.first; k < chunk.second; ++k)
+    add_virtual_lights(eye(k), static_cast<std::uint32_t>(k - chunk.first), lights, pass.general_virtual_lights, sent_, contributions_);
+
   queries_.resize_lights(lights.size);
   copy(lights.position, lights.size, queries_.light.position);
   copy(lights.normal, lights.size, queries_.light.normal);

@@ -88,6 +88,7 @@ class EyeKernel {
   std::vector<std::uint32_t> light_begin_, place_;  ///< sorting queries by light
   std::vector<std::size_t> chunk_slot_;
   LightSampleBatch light_;
+  SentRadiance sent_;
   LightSampleBatch sky_;  ///< directions of the environment that the tile's eye samples choose from
   std::size_t sky_size_ = 0;
   Vec3Batch position_, normal_;

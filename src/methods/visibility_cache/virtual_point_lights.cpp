@@ -126,6 +126,7 @@ VirtualPointLights lights_of(std::span<const Candidate> candidates, std::span<co
   for (Vec3Batch* batch : {&lights.position, &lights.normal, &lights.flux, &lights.radiosity}) batch->resize(lights.size);
   lights.error.resize(padded(lights.size)), lights.cell_area.resize(padded(lights.size)), lights.lambert.resize(padded(lights.size));
   lights.wi.resize(lights.size), lights.frame.resize(lights.size), lights.bsdf.resize(lights.size);
+  lights.lobes.resize(lights.size);
   for (std::size_t i = 0; i < lights.size; ++i) {
     const Candidate& candidate = candidates[survivors[i].candidate];
     const Color beta = candidate.beta * survivors[i].scale;
@@ -138,6 +139,7 @@ VirtualPointLights lights_of(std::span<const Candidate> candidates, std::span<co
     lights.wi[i] = candidate.wi;
     lights.frame[i] = candidate.surface.frame;
     lights.bsdf[i] = candidate.surface.bsdf;
+    lights.lobes[i] = lights.bsdf[i].lobes(lights.frame[i].to_local(lights.wi[i]));
   }
   return lights;
 }

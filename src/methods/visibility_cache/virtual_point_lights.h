@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/core/aligned.h"
@@ -36,6 +37,7 @@ struct VirtualPointLights {
   std::vector<Vec3> wi;                 ///< unit, towards where the light came from
   std::vector<Frame3> frame;            ///< shading frame, its normal on the side of the winding (Bsdf's outside), not of `normal`
   std::vector<Bsdf> bsdf;
+  std::vector<std::optional<SurfaceLobes>> lobes;  ///< of bsdf seen from wi in `frame`, where it has that shape
   std::size_t size = 0;
   float max_geometry_term = 0;  ///< clamp for cos cos / r² of connections, world units⁻²; infinity without
 };

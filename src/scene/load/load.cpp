@@ -61,6 +61,7 @@ Scene load_file(const std::filesystem::path& path, const LoadOptions& options, c
 
 std::vector<std::string> scene_file_endings() {
   std::vector<std::string> endings;
+  endings.reserve(std::size(kFormats));
   for (const Format& format : kFormats) endings.emplace_back(format.ending);
   return endings;
 }
