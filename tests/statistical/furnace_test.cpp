@@ -8,6 +8,7 @@
 #include "shade/bsdf_albedo.h"
 #include "shade/material_eval.h"
 #include "support/chi_square.h"
+#include "support/effort.h"
 #include "support/picture_statistics.h"
 
 namespace sightline::test {
@@ -67,9 +68,9 @@ TEST(Furnace, EveryModelShowsItsDirectionalAlbedo) {
       Vec3 origin, direction;
       centre_ray(shot, 0, origin, direction);
       const Color truth = quadrature(shot, {0, 0, 1}, -direction);
-      const Replicates seen = replicate(shot, {.spp = 4096, .max_bounces = 2}, 24);
+      const Replicates seen = replicate(shot, {.spp = 4096 / kFewer, .max_bounces = 2}, 24);
       for (int k = 0; k < 3; ++k) {
-        EXPECT_LE(seen.error[0][k], 1e-3) << c.name << ", cos " << cos_o;
+        EXPECT_LE(seen.error[0][k], 1e-3 * kCoarser) << c.name << ", cos " << cos_o;
         EXPECT_NEAR(seen.mean[0][k], truth[k], 4 * seen.error[0][k] + 1e-4) << c.name << ", cos " << cos_o;
       }
     }
@@ -81,10 +82,10 @@ TEST(Furnace, MixShowsTheMeanOfItsParts) {
   const MaterialId first = builtin::add_diffuse(scene, "first", Color(0.2f, 0.4f, 0.6f));
   const MaterialId second = builtin::add_diffuse(scene, "second", Color(0.9f, 0.5f, 0.1f));
   scene.materials[0].model = MixMaterial{.first = first, .second = second, .amount = 0.25f};
-  const Replicates seen = replicate(shot_of(scene, {1, 1}), {.spp = 1024, .max_bounces = 2}, 16);
+  const Replicates seen = replicate(shot_of(scene, {1, 1}), {.spp = 1024 / kFewer, .max_bounces = 2}, 16);
   const Vec3d truth = 0.75 * Vec3d(0.2, 0.4, 0.6) + 0.25 * Vec3d(0.9, 0.5, 0.1);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_LE(seen.error[0][k], 1e-3);
+    EXPECT_LE(seen.error[0][k], 1e-3 * kCoarser);
     EXPECT_NEAR(seen.mean[0][k], truth[k], 4 * seen.error[0][k] + 1e-4);
   }
 }
@@ -152,7 +153,7 @@ TEST(Furnace, BallsShowTheirDirectionalAlbedoInEveryPixel) {
         centre_ray(shot, pixel, origin, direction);
         if (!is_black(normal)) truth[pixel] = Vec3d(quadrature(shot, glm::normalize(normal), -direction));
       }
-      const Replicates seen = replicate(shot, {.spp = 1024, .max_bounces = 1}, 24);
+      const Replicates seen = replicate(shot, {.spp = 1024 / kFewer, .max_bounces = 1}, 24);
       // The quadrature's own tolerance, where the estimate has less scatter than that.
       Replicates widened = seen;
       for (Vec3d& error : widened.error) error = glm::sqrt(error * error + Vec3d(2e-5 * 2e-5));
@@ -161,7 +162,7 @@ TEST(Furnace, BallsShowTheirDirectionalAlbedoInEveryPixel) {
       EXPECT_GT(test.mean_p, 1e-3) << spec << ": " << test.worst;
       double largest = 0;
       for (const Vec3d& error : seen.error) largest = std::fmax(largest, error.y);
-      EXPECT_LE(largest, 1e-3) << spec;
+      EXPECT_LE(largest, 1e-3 * kCoarser) << spec;
     }
   }
 }
@@ -174,11 +175,11 @@ TEST(Furnace, TranslucentBallShowsTheSumOfItsInnerReflections) {
   for (std::uint32_t pixel = 0; pixel < 16; ++pixel) {
     if (guide.frame.value(Aov::surface, pixel).x > 0) truth[pixel] = Vec3d(0.4 + 0.4 * 0.4 / (1 - 0.4));
   }
-  const Replicates seen = replicate(shot, {.spp = 2048, .max_bounces = 40}, 32);
+  const Replicates seen = replicate(shot, {.spp = 2048 / kFewer, .max_bounces = 40}, 32);
   const PictureTest test = compare(seen, truth);
   EXPECT_GT(test.pixel_p, 1e-3) << test.worst;
   EXPECT_GT(test.mean_p, 1e-3) << test.worst;
-  for (const Vec3d& error : seen.error) EXPECT_LE(error.y, 1e-3);
+  for (const Vec3d& error : seen.error) EXPECT_LE(error.y, 1e-3 * kCoarser);
 }
 
 }  // namespace

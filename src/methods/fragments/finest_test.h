@@ -19,9 +19,10 @@
 namespace sightline {
 
 struct FinestOptions {
-  std::uint32_t rays = 64;         ///< of pixels that geometry made so small, where they are many: nothing smooths them
-  std::uint32_t smooth_rays = 32;  ///< of all others
-  bool early_out = true;           ///< a quarter of the rays first; done if all of them agree
+  std::uint32_t rays = 64;          ///< of pixels that geometry made so small, where they are many: nothing smooths them
+  std::uint32_t smooth_rays = 32;   ///< of all others
+  std::uint32_t crowded_rays = 64;  ///< instead of `rays`, in root tiles that are mostly such pixels
+  bool early_out = true;            ///< a quarter of the rays first; done if all of them agree
 };
 
 /// Buffers of one thread.

@@ -40,11 +40,13 @@ struct SplitOptions {
   int gradient = 7;               ///< of 16
   bool subdivide_twice = true;    ///< gradient-aware subdivision
   bool strict_threshold = false;  ///< `more than` instead of `at least` the threshold
+  int pixel_threshold = 2;        ///< of 16, for fragments of two pixels
 };
 
-/// How many differing points make a fragment unstable: of 16, two up to four pixels, one from eight on [Koa2017].
+/// How many differing points make a fragment unstable: of 16, pixel_threshold at two pixels, two at four, one from eight on [Koa2017, with
+/// two at two].
 constexpr int threshold(int level, const SplitOptions& o) {
-  return std::max(1, (level <= 2 ? 2 : 1) * o.rays / 16) + (o.strict_threshold ? 1 : 0);
+  return std::max(1, (level <= 1 ? o.pixel_threshold : level == 2 ? 2 : 1) * o.rays / 16) + (o.strict_threshold ? 1 : 0);
 }
 constexpr bool is_stable(int level, const ProbeMasks& masks, const SplitOptions& o) {
   return std::popcount(ray_difference(masks)) < threshold(level, o);

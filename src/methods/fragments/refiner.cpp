@@ -14,6 +14,8 @@ constexpr int kExtraLevel = 3;
 // Pixels that geometry made so small are lines here and there, or most of a picture: from this share of a root tile on they are the
 // picture.
 constexpr std::size_t kManyPixels = static_cast<std::size_t>(kRootSize) * kRootSize / 8;
+// From this share on hardly anything else is in it (hair, leaves), and noise is what one sees.
+constexpr std::size_t kCrowdedPixels = kManyPixels * 3;
 // By how much an additional sample may differ from its quadrant's: sampling noise where the light is partly seen, little where it is all
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
@@ -252,8 +254,11 @@ void Refiner::clear(const GBuffer& g, const RootTile& tile, LightSignal& signal)
 }
 
 void Refiner::write_pixels(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics) {
-  const bool many = geometry_pixels_.size() > kManyPixels;
-  write_pixels(g, geometry_pixels_, many ? options_.finest.rays : pixel_rays(), sample, signal, statistics);
+  const std::size_t pixels = geometry_pixels_.size();
+  const std::uint32_t rays = pixels > kCrowdedPixels ? options_.finest.crowded_rays
+                             : pixels > kManyPixels  ? options_.finest.rays
+                                                     : pixel_rays();
+  write_pixels(g, geometry_pixels_, rays, sample, signal, statistics);
   write_pixels(g, finest_, pixel_rays(), sample, signal, statistics);
 }
 

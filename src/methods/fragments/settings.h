@@ -38,6 +38,7 @@ struct FragmentsSettings {
   bool subdivide_twice = true;
   bool dark_culling = true;
   Switch strict_threshold = Switch::variant;
+  int pixel_threshold = 0;
   Switch extra_samples = Switch::variant;
   int nichols_threshold = 6;
   Jitter jitter = Jitter::variant;
@@ -103,6 +104,10 @@ struct FragmentsSettings {
     visit("dark_culling", &S::dark_culling, {.help = "fragments that see nothing of the light are done"});
     visit("strict_threshold", &S::strict_threshold,
           {.help = "the paper's threshold read as 'more than' instead of 'at least'", .choices = {"variant", "off", "on"}});
+    visit("pixel_threshold", &S::pixel_threshold,
+          {.help = "differing rays of 16 that split fragments of 2 pixels into pixels; 0 = as the variant says",
+           .minimum = 0,
+           .maximum = 16});
     visit("extra_samples", &S::extra_samples,
           {.help = "three finest samples on the upper and left edge of stable fragments", .choices = {"variant", "off", "on"}});
     visit("nichols_threshold", &S::nichols_threshold,

@@ -51,6 +51,7 @@ TEST(FragmentThreshold, IsTwoOfSixteenUpToFourPixelsAndOneFromEightOn) {
     const int expected = level <= 2 ? 2 : 1;
     EXPECT_EQ(threshold(level, at_least), expected) << level;
     EXPECT_EQ(threshold(level, more_than), expected + 1) << level;
+    EXPECT_EQ(threshold(level, {.pixel_threshold = 4}), level == 1 ? 4 : expected) << level;
     EXPECT_EQ(threshold(level, {.rays = 32}), 2 * expected) << level;
     EXPECT_EQ(threshold(level, {.rays = 64}), 4 * expected) << level;
     for (int differing = 0; differing <= 4; ++differing) {
