@@ -101,12 +101,12 @@ HWY_INLINE void emit(D d, const PointV& p, hn::Vec<DU> point, const LightSampleB
     out.count += hn::Lanes(d);
     return;
   }
-  const auto put = [&](V v, AlignedVector<float>& array) { hn::CompressStore(v, keep, d, array.data() + at); };
+  const auto put = [&](V v, AlignedVector<float>& array) { compress_store(v, keep, d, array.data() + at); };
   put(origin.x, out.rays.origin.x), put(origin.y, out.rays.origin.y), put(origin.z, out.rays.origin.z);
   put(direction.x, out.rays.direction.x), put(direction.y, out.rays.direction.y), put(direction.z, out.rays.direction.z);
   put(zero, out.rays.t_near), put(t_far, out.rays.t_far);
   put(value.x, out.contribution.x), put(value.y, out.contribution.y), put(value.z, out.contribution.z);
-  out.count += hn::CompressStore(point, hn::RebindMask(du, keep), du, out.point.data() + at);
+  out.count += compress_store(point, hn::RebindMask(du, keep), du, out.point.data() + at);
 }
 
 void AppendDirectLight(const ShadingPoints& points, std::uint32_t point, const LightSampleBatch& light, std::size_t first,
@@ -214,7 +214,7 @@ HWY_EXPORT(AddVisible);
 HWY_EXPORT(SampleLambert);
 
 void ShadowLanes::resize(std::size_t capacity) {
-  // CompressStore may write a whole vector at the last element.
+  // compress_store() writes a whole vector at the last element.
   const std::size_t size = capacity + 2 * kLanes;
   rays.resize(size);
   contribution.resize(size);

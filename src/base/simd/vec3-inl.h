@@ -13,6 +13,7 @@
 
 #include "base/core/aligned.h"
 #include "base/math/vec.h"
+#include "base/simd/compress-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sightline::HWY_NAMESPACE::lanes {
@@ -42,8 +43,8 @@ HWY_INLINE void store3(D d, const V3& v, Vec3Batch& b, std::size_t i) {
   hn::StoreU(v.x, d, b.x.data() + i), hn::StoreU(v.y, d, b.y.data() + i), hn::StoreU(v.z, d, b.z.data() + i);
 }
 HWY_INLINE void compress_store3(D d, const V3& v, M mask, Vec3Batch& b, std::size_t i) {
-  hn::CompressStore(v.x, mask, d, b.x.data() + i), hn::CompressStore(v.y, mask, d, b.y.data() + i);
-  hn::CompressStore(v.z, mask, d, b.z.data() + i);
+  compress_store(v.x, mask, d, b.x.data() + i), compress_store(v.y, mask, d, b.y.data() + i);
+  compress_store(v.z, mask, d, b.z.data() + i);
 }
 HWY_INLINE V3 neg3(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 HWY_INLINE V3 add3(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }

@@ -29,7 +29,7 @@ std::size_t TurnRays(const square_lights::DiskRays& rays, const Frame3& frame, c
     M kept = hn::FirstN(d, rays.count() - k);
     if (side) kept = hn::And(kept, hn::Gt(dot3(turned, up), hn::Zero(d)));
     compress_store3(d, turned, kept, direction, count);
-    count += hn::CompressStore(hn::LoadU(du, rays.point.data() + k), hn::RebindMask(du, kept), du, point + count);
+    count += compress_store(hn::LoadU(du, rays.point.data() + k), hn::RebindMask(du, kept), du, point + count);
   }
   return count;
 }

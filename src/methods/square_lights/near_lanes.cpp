@@ -39,7 +39,7 @@ HWY_ATTR std::size_t FindActive(const LightSet& lights, const Vec3& normal, floa
     M kept = hn::And(above, seen);
     if (i + hn::Lanes(d) > lights.count) kept = hn::And(kept, hn::FirstN(d, lights.count > i ? lights.count - i : 0));
     hn::StoreU(hn::IfThenElseZero(kept, one), d, on + i);
-    count += hn::CompressStore(IndexAt(du, i), hn::RebindMask(du, kept), du, index + count);
+    count += compress_store(IndexAt(du, i), hn::RebindMask(du, kept), du, index + count);
   }
   return count;
 }
@@ -66,11 +66,16 @@ HWY_ATTR std::size_t FindNear(const LightSet& lights, const float* on, const flo
       kept = hn::AndNot(away, kept);
       if (hn::AllFalse(d, kept)) continue;
     }
-    hn::CompressStore(dot3(turn_x, c), kept, d, near.x.data() + count);
-    hn::CompressStore(dot3(turn_y, c), kept, d, near.y.data() + count);
-    hn::CompressStore(dot3(turn_z, c), kept, d, near.z.data() + count);
-    hn::CompressStore(hn::Load(d, lights.r.data() + i), kept, d, near.r.data() + count);
-    count += hn::CompressStore(IndexAt(du, i), hn::RebindMask(du, kept), du, near.index.data() + count);
+    compress_store(dot3(turn_x, c), kept, d, near.x.data() + count);
+    compress_store(dot3(turn_y, c), kept, d, near.y.data() + count);
+    compress_store(dot3(turn_z, c), kept, d, near.z.data() + count);
+    compress_store(hn::Load(d, lights.r.data() + i), kept, d, near.r.data() + count);
+    count += compress_store(IndexAt(du, i), hn::RebindMask(du, kept), du, near.index.data() + count);
+  }
+  if (count == 0) return 0;
+  for (AlignedVector<float>* values : {&near.x, &near.y, &near.z, &near.r}) {
+    const V last = hn::Set(d, (*values)[count - 1]);
+    for (std::size_t i = count; i < padded(count); i += hn::Lanes(d)) hn::StoreU(last, d, values->data() + i);
   }
   return count;
 }
@@ -103,17 +108,12 @@ OccluderCone occluder_cone(const Vec3& center, float radius, const Vec3& positio
 
 void find_near(const LightSet& lights, const ActiveLights& active, std::span<const float> may, const ReachLanes& reach,
                const OccluderCone& cone, const Mat3& turn, NearLights& near) {
-  const std::size_t room = lights.x.size() + kLanes;
+  const std::size_t room = lights.x.size() + 2 * kLanes;
   if (near.index.size() < room) {
     for (AlignedVector<float>* values : {&near.x, &near.y, &near.z, &near.r}) values->resize(room);
     near.index.resize(room);
   }
   near.count = HWY_DYNAMIC_DISPATCH(FindNear)(lights, active.on.data(), may.data(), reach, cone, turn, near);
-  if (near.count == 0) return;
-  for (AlignedVector<float>* values : {&near.x, &near.y, &near.z, &near.r}) {
-    const float last = (*values)[near.count - 1];
-    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(near.count), padded(near.count) - near.count, last);
-  }
 }
 
 }  // namespace sightline::square_lights

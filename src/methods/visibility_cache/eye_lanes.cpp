@@ -53,7 +53,7 @@ HWY_INLINE void append(D d, const V3& value, M keep, std::uint32_t eye_index, hn
   const DU du;
   compress_store3(d, value, keep, out.color, out.size);
   hn::StoreU(hn::Set(du, eye_index), du, out.eye.data() + out.size);
-  out.size += hn::CompressStore(light, hn::RebindMask(du, keep), du, out.light.data() + out.size);
+  out.size += compress_store(light, hn::RebindMask(du, keep), du, out.light.data() + out.size);
 }
 
 template <Interface kInterface>

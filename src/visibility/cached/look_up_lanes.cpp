@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd/compress-inl.h"
 #include "visibility/cached/hash-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -231,15 +232,15 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
     if (!hn::AllTrue(d, done)) {
       rejected += hn::CountTrue(d, hn::AndNot(answer.same_key, hn::And(miss, hn::Ne(slot, hn::Zero(d)))));
       if (!hn::AllFalse(d, miss)) {
-        hn::CompressStore(id, miss, d, out.miss_id.data() + misses);
-        hn::CompressStore(keys.own.index, miss, d, out.miss_index.data() + misses);
-        misses += hn::CompressStore(tag, miss, d, out.miss_tag.data() + misses);
+        lanes::compress_store(id, miss, d, out.miss_id.data() + misses);
+        lanes::compress_store(keys.own.index, miss, d, out.miss_index.data() + misses);
+        misses += lanes::compress_store(tag, miss, d, out.miss_tag.data() + misses);
       }
       if (!hn::AllFalse(d, refine)) {
-        const std::size_t count = hn::CompressStore(id, refine, d, out.refine_id.data() + refines);
+        const std::size_t count = lanes::compress_store(id, refine, d, out.refine_id.data() + refines);
         refines += count, answered -= count;
       }
-      if (!hn::AllFalse(d, exact)) exacts += hn::CompressStore(id, exact, d, out.exact_id.data() + exacts);
+      if (!hn::AllFalse(d, exact)) exacts += lanes::compress_store(id, exact, d, out.exact_id.data() + exacts);
     }
     if (!q.id) {
       hn::StoreU(weight, df, weights + q.first + i);
@@ -247,8 +248,8 @@ HWY_INLINE void look_up(const LookUp& q, float* HWY_RESTRICT weights, LookUpResu
       alignas(kCacheLine) float value[kLanes] = {};
       alignas(kCacheLine) std::uint32_t place[kLanes] = {};
       hn::Store(weight, df, value);
-      const std::size_t count = hn::CompressStore(id, done, d, place);
-      hn::CompressStore(weight, hn::RebindMask(df, done), df, value);
+      const std::size_t count = lanes::compress_store(id, done, d, place);
+      lanes::compress_store(weight, hn::RebindMask(df, done), df, value);
       for (std::size_t k = 0; k < count; ++k) weights[place[k]] = value[k];
     }
   }
