@@ -48,7 +48,7 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.geometry.tau_n = number(s.tau_n, 0.f, ours && !fast ? 0.2f : 0.35f);
   o.geometry.tau_d = number(s.tau_d, 0.f, ours ? 0.001f : 0.01f);
   o.geometry.plane_distance = s.depth == S::Depth::plane, o.geometry.coarsest = s.coarsest;
-  o.split = {s.rays, s.gradient, s.subdivide_twice, chosen(s.strict_threshold, fast), number(s.pixel_threshold, 0, ours && !fast ? 4 : 2)};
+  o.split = {s.rays, s.gradient, s.subdivide_twice, chosen(s.strict_threshold, fast), s.pixel_threshold};
   o.ratio = s.signal == S::Signal::variant ? ours : s.signal == S::Signal::ratio;
   // Penumbrae that are smoothed need half the rays.
   const auto rays = [&](int by_variant) { return static_cast<std::uint32_t>(std::max(number(s.level0_rays, 0, by_variant), 16)); };

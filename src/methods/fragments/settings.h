@@ -38,7 +38,7 @@ struct FragmentsSettings {
   bool subdivide_twice = true;
   bool dark_culling = true;
   Switch strict_threshold = Switch::variant;
-  int pixel_threshold = 0;
+  int pixel_threshold = 2;
   Switch extra_samples = Switch::variant;
   int nichols_threshold = 6;
   Jitter jitter = Jitter::variant;
@@ -105,8 +105,8 @@ struct FragmentsSettings {
     visit("strict_threshold", &S::strict_threshold,
           {.help = "the paper's threshold read as 'more than' instead of 'at least'", .choices = {"variant", "off", "on"}});
     visit("pixel_threshold", &S::pixel_threshold,
-          {.help = "differing rays of 16 that split fragments of 2 pixels into pixels; 0 = as the variant says",
-           .minimum = 0,
+          {.help = "differing rays of 16 that split fragments of 2 pixels into pixels; more is faster, and noisier",
+           .minimum = 1,
            .maximum = 16});
     visit("extra_samples", &S::extra_samples,
           {.help = "three finest samples on the upper and left edge of stable fragments", .choices = {"variant", "off", "on"}});

@@ -49,7 +49,7 @@ TEST(StageMaps, ChangeNothingButWhatIsShown) {
 // With one light: a stable fragment's quadrants differ by less than the threshold, and whoever differed more has been split.
 TEST(StageMaps, OfGradientsTellStableFragmentsFromPixels) {
   const Shot shot = shot_of(lamp_over_floor(Occluder::box), {150, 101});
-  const std::vector<std::string> plain = {"confirm=0", "borders=0", "dark_culling=off", "pixel_threshold=2"};
+  const std::vector<std::string> plain = {"confirm=0", "borders=0", "dark_culling=off"};
   auto with = [&](const char* show) {
     std::vector<std::string> settings = plain;
     settings.push_back(show);
