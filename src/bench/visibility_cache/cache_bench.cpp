@@ -44,6 +44,7 @@ BenchResults run_cache_bench(const CacheBenchOptions& options, const Context& co
   const BenchPlan plan(part_table(), options.parts, options.views);
   plan.check_read("--ce", !options.ce.empty(), {"curves"});
   plan.check_read("--spp", !options.spp.empty(), {"curves", "rivals"});
+  plan.check_read("--set", !options.settings.empty(), {"curves"});
   plan.check_read("--strip", options.strip, {"flicker"});
   BenchResults results;
   results.json = {{"sightline", kVersion},      {"suite", "visibility-cache"}, {"threads", context.thread_count()},
