@@ -58,6 +58,10 @@ void take_nearer(FrameShading::Scratch& scratch, std::uint32_t i, float distance
   if (i < scratch.gradient_x.size()) scratch.gradient_x[i] = scratch.gradient_y[i] = 0;
 }
 
+void take_nearer(std::span<const float> found, std::size_t count, std::span<float> distance) {
+  for (std::size_t i = 0; i < count; ++i) distance[i] = found[i] < distance[i] ? found[i] : distance[i];
+}
+
 // Lights that splitting may make of one.
 constexpr std::size_t kMostSplit = 8;
 
@@ -133,12 +137,13 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
       if (!any) continue;
       use.may.resize(padded(use.may.size()), 0.f);
       const Mat4 field_from_world = glm::inverse(occluder.world_from_field);
-      use.field_from_receiver = field_from_world * object.world_from_object;
-      use.turn = Mat3(use.field_from_receiver) / scale_of(use.field_from_receiver);
-      use.center = transform_point(receiver.object_from_world, occluder_center);
-      use.radius = occluder_radius * scale_of(receiver.object_from_world);
+      const Mat4 field_from_receiver = field_from_world * object.world_from_object;
+      use.turn = Mat3(field_from_receiver) / scale_of(field_from_receiver);
+      receiver.around.add(transform_point(receiver.object_from_world, occluder_center),
+                          occluder_radius * scale_of(receiver.object_from_world), use.turn);
       receiver.occluders.push_back(std::move(use));
     }
+    receiver.around.finish();
   }
   // What a light reaches around its centre, as the fields have it.
   for (const float r : world_lights_.r) {
@@ -182,12 +187,24 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
     find_active(receiver.lights, normal, plane_scale_, scratch.distance, -0.70710678f, scratch.active);
   else
     find_active(receiver.lights, normal, plane_scale_, scratch.visible, 0, scratch.active);
-  NearLights& near = scratch.near;
-  for (const Use& use : receiver.occluders) {
-    find_near(receiver.lights, scratch.active, use.may, reach_, occluder_cone(use.center, use.radius, position), use.turn, near);
+  // Choosing tables of all occluders first gives memory the time to fetch them.
+  if (scratch.meetings.size() < receiver.occluders.size()) scratch.meetings.resize(receiver.occluders.size());
+  occluder_places(receiver.around, position, scratch.places);
+  for (std::size_t o = 0; o < receiver.occluders.size(); ++o) {
+    const Use& use = receiver.occluders[o];
+    Meeting& meeting = scratch.meetings[o];
+    find_near(receiver.lights, scratch.active, use.may, reach_, scratch.places.cone(o), use.turn, meeting.near);
+    if (meeting.near.count == 0) continue;
+    const std::array<std::int32_t, 8> before = meeting.samples.table;
+    meeting.samples = use.occluder->field.samples(scratch.places.place(o));
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (meeting.samples.table[k] != before[k]) use.occluder->field.prefetch(meeting.samples.table[k]);
+    }
+  }
+  for (std::size_t o = 0; o < receiver.occluders.size(); ++o) {
+    const NearLights& near = scratch.meetings[o].near;
     if (near.count == 0) continue;
-    const OccluderSamples samples = use.occluder->field.samples(transform_point(use.field_from_receiver, position));
-    occluder_distances(use.occluder->field, samples, near.lanes(), scratch.other);
+    occluder_distances(receiver.occluders[o].occluder->field, scratch.meetings[o].samples, near.lanes(), scratch.other);
     scratch.counts.occluder_tests += near.count;
     for (std::size_t k = 0; k < near.count; ++k) {
       const std::uint32_t i = near.index[k];
@@ -202,10 +219,13 @@ void FrameShading::hide(const Receiver& receiver, const Vec3& position, const Ve
   for (const PlanarOccluder& plane : bake_.planes()) {
     plane.see(world, scratch.plane);
     if (scratch.plane.is_edge_on()) continue;
-    scratch.plane.outside(world_lights_.x, world_lights_.y, world_lights_.z, scratch.other);
+    scratch.plane.distances(world_lights_, plane_scale_, scratch.other);
+    if (combine && scratch.gradient_x.empty()) {
+      take_nearer(scratch.other, world_lights_.x.size(), scratch.distance);
+      continue;
+    }
     for (const std::uint32_t i : scratch.active.indices()) {
-      const float r_p = world_lights_.r[i] * plane_scale_;
-      const float d = PlanarOccluder::Seen::distance(scratch.other[i], r_p);
+      const float r_p = world_lights_.r[i] * plane_scale_, d = scratch.other[i];
       if (d >= r_p) continue;
       if (combine)
         take_nearer(scratch, i, d);

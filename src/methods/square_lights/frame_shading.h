@@ -30,12 +30,18 @@ class FrameShading {
   /// Transforms are those of the scene that `bake` was made for.
   FrameShading(const SquareBake& bake, const SquareLightsSettings& settings, const View& view);
 
+  /// What an occluder may hide from a receiver.
+  struct Meeting {
+    NearLights near;
+    OccluderSamples samples;
+  };
   /// Buffers of one thread.
   struct Scratch {
     AlignedVector<float> visible, distance, other, gradient_x, gradient_y;
     ActiveLights active;
-    NearLights near;
-    LightSet local, turned;  ///< lights listed for one receiver, in world space, and in another
+    OccluderPlaces places;
+    std::vector<Meeting> meetings;  ///< by occluder of the receiver
+    LightSet local, turned;         ///< lights listed for one receiver, in world space, and in another
     CutRefiner refiner;
     PlanarOccluder::Seen plane;
     std::vector<PatchLight> patches;
@@ -64,10 +70,7 @@ class FrameShading {
   /// An occluder as a receiver object meets it.
   struct Use {
     const Occluder* occluder = nullptr;
-    Mat4 field_from_receiver{1};
-    Mat3 turn{1};              ///< the same for directions
-    Vec3 center{0};            ///< of its sphere, in the receiver's space
-    float radius = 0;          ///< there
+    Mat3 turn{1};              ///< of directions from the receiver's space to the field's
     AlignedVector<float> may;  ///< by light, padded: 1 if any vertex of the receiver may lose some of it, else 0
   };
   struct Receiver {
@@ -75,6 +78,7 @@ class FrameShading {
     LightSet lights;  ///< all, in the object's space
     Vec3 eye{0};      ///< in the object's space, or the direction to the camera
     std::vector<Use> occluders;
+    OccluderLanes around;  ///< the same
     bool planes = false;
   };
 

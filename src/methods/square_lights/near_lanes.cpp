@@ -97,15 +97,6 @@ void find_active(const LightSet& lights, const Vec3& normal, float plane_scale, 
       HWY_DYNAMIC_DISPATCH(FindActive)(lights, normal, plane_scale, value.data(), least_by_radius, active.on.data(), active.index.data());
 }
 
-OccluderCone occluder_cone(const Vec3& center, float radius, const Vec3& position) {
-  OccluderCone cone;
-  cone.to = center - position;
-  cone.distance = glm::length(cone.to), cone.sine = radius / cone.distance;
-  cone.inside = !(cone.sine < 1);
-  cone.cosine = cone.inside ? 0 : std::sqrt(1 - cone.sine * cone.sine);
-  return cone;
-}
-
 void find_near(const LightSet& lights, const ActiveLights& active, std::span<const float> may, const ReachLanes& reach,
                const OccluderCone& cone, const Mat3& turn, NearLights& near) {
   const std::size_t room = lights.x.size() + 2 * kLanes;

@@ -7,6 +7,7 @@
 
 #include "base/core/aligned.h"
 #include "base/math/vec.h"
+#include "methods/square_lights/occluder_place.h"
 #include "methods/square_lights/shade_lanes.h"
 
 namespace sightline::square_lights {
@@ -27,15 +28,6 @@ struct ActiveLights {
 /// `plane_scale`: distances, of which half an edge below 0 is fully hidden, or, with 0, visible parts.
 void find_active(const LightSet& lights, const Vec3& normal, float plane_scale, std::span<const float> value, float least_by_radius,
                  ActiveLights& active);
-
-/// Where an occluder's bounding sphere stands for one receiver.
-struct OccluderCone {
-  Vec3 to{0};          ///< from the receiver to its centre
-  float distance = 0;  ///< length of that
-  float sine = 0, cosine = 0;
-  bool inside = false;  ///< the receiver is in the sphere
-};
-OccluderCone occluder_cone(const Vec3& center, float radius, const Vec3& position);
 
 /// Lights turned into an occluder's space; lanes up to the next multiple of kLanes repeat the last light, so that they read what is read
 /// anyway.

@@ -1,5 +1,7 @@
 #include "methods/square_lights/occluder_field.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,12 +37,9 @@ struct TexelCorners {
   std::array<std::size_t, 4> texel;
   std::array<float, 4> weight;
 };
-TexelCorners corners_at(const Vec3& direction) {
-  const CubePlace place = cube_place(direction);
-  const float u = (place.u + 1) * (kShellSize / 2.f) - 0.5f, v = (place.v + 1) * (kShellSize / 2.f) - 0.5f;
-  const int x = std::clamp(static_cast<int>(std::floor(u)), -1, kShellSize - 1);
-  const int y = std::clamp(static_cast<int>(std::floor(v)), -1, kShellSize - 1);
-  const float fx = std::clamp(u - static_cast<float>(x), 0.f, 1.f), fy = std::clamp(v - static_cast<float>(y), 0.f, 1.f);
+TexelCorners corners_at(const OccluderPlace& place) {
+  const int x = place.x, y = place.y;
+  const float fx = place.fraction_x, fy = place.fraction_y;
   TexelCorners corners;
   corners.weight = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
   if (x >= 0 && y >= 0 && x + 1 < kShellSize && y + 1 < kShellSize) {
@@ -62,54 +61,49 @@ TexelCorners corners_at(const Vec3& direction) {
   return corners;
 }
 
-/// The frames that tables of each texel are in; z is towards the centre.
-const std::vector<Frame3>& texel_frames() {
-  static const std::vector<Frame3> frames = [] {
-    std::vector<Frame3> f(kShellPoints);
-    for (std::size_t i = 0; i < f.size(); ++i) f[i] = frame_from_normal(-shell_direction(i));
-    return f;
-  }();
-  return frames;
+/// The rotation that frame_from_normal() makes, as a quaternion of any length: that of the least rotation from the nearer pole to the
+/// normal, and at the lower pole from half a turn about x.
+struct Turn {
+  float w, x, y, z;
+};
+Turn turn_of(const Vec3& normal) {
+  return std::signbit(normal.z) ? Turn{-normal.y, 1 - normal.z, 0, normal.x} : Turn{1 + normal.z, -normal.y, normal.x, 0};
 }
 
-/// Cosines and sines by which four frames see directions turned that the least rotations from frame.normal to their normals take along.
-/// Four numbers side by side, so that the compiler makes vectors of them.
-struct LeastTurns {
-  std::array<float, 4> cosine, sine;
-};
-LeastTurns least_turns(const Frame3& frame, const std::array<const Frame3*, 4>& there) {
-  using Four = std::array<float, 4>;
-  Four to[3], own_tangent[3], own_bitangent[3];
-  for (std::size_t k = 0; k < 4; ++k) {
-    for (int c = 0; c < 3; ++c) {
-      to[c][k] = there[k]->normal[c], own_tangent[c][k] = there[k]->tangent[c], own_bitangent[c][k] = there[k]->bitangent[c];
-    }
-  }
-  const Vec3 n = frame.normal, t = frame.tangent;
-  LeastTurns turns;
-  for (std::size_t k = 0; k < 4; ++k) {
-    // axis = n x to; the tangent moves by axis x t + axis x (axis x t) / (1 + n . to).
-    const float ax = n.y * to[2][k] - to[1][k] * n.z, ay = n.z * to[0][k] - to[2][k] * n.x, az = n.x * to[1][k] - to[0][k] * n.y;
-    const float mx = ay * t.z - t.y * az, my = az * t.x - t.z * ax, mz = ax * t.y - t.x * ay;
-    const float scale = 1 + (n.x * to[0][k] + n.y * to[1][k] + n.z * to[2][k]);
-    const float x = t.x + mx + (ay * mz - my * az) / scale, y = t.y + my + (az * mx - mz * ax) / scale,
-                z = t.z + mz + (ax * my - mx * ay) / scale;
-    turns.cosine[k] = x * own_tangent[0][k] + y * own_tangent[1][k] + z * own_tangent[2][k];
-    turns.sine[k] = x * own_bitangent[0][k] + y * own_bitangent[1][k] + z * own_bitangent[2][k];
-  }
+/// Of the frames that tables of each texel are in; their z is towards the centre.
+const std::vector<Turn>& texel_turns() {
+  static const std::vector<Turn> turns = [] {
+    std::vector<Turn> t(kShellPoints);
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] = turn_of(-shell_direction(i));
+    return t;
+  }();
   return turns;
 }
 
-}  // namespace
-
-float shell_radius(int k) {
-  static const std::array<float, kShells> radii = [] {
-    std::array<float, kShells> r;
-    for (int i = 0; i < kShells; ++i) r[i] = kInnerShell * std::pow(kOuterShell / kInnerShell, static_cast<float>(i) / (kShells - 1));
-    return r;
-  }();
-  return radii[static_cast<std::size_t>(k)];
+/// Cosines and sines by which four frames see directions turned that the least rotations from the normal of a frame to theirs take along:
+/// the twist about z of the rotation between them, which is what its quaternion has beside the axis in the plane. Four numbers side by
+/// side, so that the compiler makes vectors of them.
+struct LeastTurns {
+  std::array<float, 4> cosine, sine;
+};
+LeastTurns least_turns(const Turn& here, const std::array<std::size_t, 4>& texel) {
+  const Turn* const turns = texel_turns().data();
+  std::array<float, 4> w, x, y, z;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Turn& there = turns[texel[k]];
+    w[k] = there.w, x[k] = there.x, y[k] = there.y, z[k] = there.z;
+  }
+  LeastTurns result;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const float cosine = w[k] * here.w + x[k] * here.x + y[k] * here.y + z[k] * here.z;
+    const float sine = w[k] * here.z - z[k] * here.w - x[k] * here.y + y[k] * here.x;
+    const float scale = 1 / (cosine * cosine + sine * sine);
+    result.cosine[k] = (cosine * cosine - sine * sine) * scale, result.sine[k] = 2 * cosine * sine * scale;
+  }
+  return result;
 }
+
+}  // namespace
 
 Vec3 shell_direction(std::size_t i) {
   const std::size_t texel = i % kShellPoints;
@@ -130,13 +124,6 @@ const std::array<float, kShells>& shell_outlines() {
 }
 
 }  // namespace
-
-float apparent_radius(float rho) {
-  if (rho <= 1) return 1;
-  // 1 - cos, in a form that keeps its digits far away.
-  const float sin2 = 1 / (rho * rho);
-  return std::sqrt(sin2 / (1 + std::sqrt(1 - sin2)));
-}
 
 std::array<float, kShells> shell_zoom(const OccluderFieldOptions& options) {
   std::array<float, kShells> zoom;
@@ -166,36 +153,33 @@ void OccluderField::measure(const Context& context) {
   hidden_ = *measured_;
 }
 
-OccluderSamples OccluderField::samples(const Vec3& position) const {
-  OccluderSamples result;
-  const Vec3 away = position - center_;
-  const float rho = glm::length(away) / radius_;
-  const Vec3 out = normalize_or(away, Vec3(0, 0, 1));
-  result.frame = frame_from_normal(-out);
-  result.inside = rho < kInnerShell;
+void OccluderField::prefetch(std::int32_t table) const {
+  const std::int8_t* const bytes = tables_.data() + static_cast<std::size_t>(table) * kTableCells;
+  for (std::size_t line = 0; line < kTableCells; line += kCacheLine) hwy::Prefetch(bytes + line);
+}
 
-  // Between which shells. Deviation: outside the object tables are stretched to the size that the occluder has from here, on both sides of
-  // a point and beyond the last shell alike; blending outlines of different sizes would blur them.
-  const float here = apparent_radius(rho);
-  constexpr float shells_per_log = (kShells - 1) / 2.7080502f;  // ln(kOuterShell / kInnerShell)
-  const float level = std::clamp(std::log(std::max(rho, 1e-6f) / kInnerShell) * shells_per_log, 0.f, static_cast<float>(kShells - 1));
-  const int first = std::min(static_cast<int>(level), kShells - 2);
-  const float between = level - static_cast<float>(first);
-  std::array<float, 2> scale, unit, share{1 - between, between};
-  for (int s = 0; s < 2; ++s) {
-    const float shell = shell_radius(first + s);
-    const float stretch = rho >= kStretched && shell >= kStretched ? here / shell_outlines()[first + s] : 1;
+OccluderSamples OccluderField::samples(const OccluderPlace& place) const {
+  OccluderSamples result;
+  result.frame = frame_from_normal(place.normal);
+  result.inside = place.rho < kInnerShell;
+
+  // Deviation: outside the object tables are stretched to the size that the occluder has from here, on both sides of a point and beyond the
+  // last shell alike; blending outlines of different sizes would blur them.
+  const std::array<float, kShells>& outlines = shell_outlines();
+  const auto first = static_cast<std::size_t>(place.shell);
+  std::array<float, 2> scale, unit, share{1 - place.between, place.between};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const bool stretched = place.rho >= kStretched && shell_radius(place.shell + static_cast<int>(s)) >= kStretched;
+    const float stretch = stretched ? place.outline / outlines[first + s] : 1;
     scale[s] = zoom_[first + s] * stretch;
     unit[s] = scale[s] * share[s];
   }
 
-  const TexelCorners corners = corners_at(out);
-  const std::vector<Frame3>& frames = texel_frames();
-  const LeastTurns turns = least_turns(
-      result.frame, {&frames[corners.texel[0]], &frames[corners.texel[1]], &frames[corners.texel[2]], &frames[corners.texel[3]]});
+  const TexelCorners corners = corners_at(place);
+  const LeastTurns turns = least_turns(turn_of(result.frame.normal), corners.texel);
   float hidden = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    const std::size_t shell = (static_cast<std::size_t>(first) + s) * kShellPoints;
+    const std::size_t shell = (first + s) * kShellPoints;
     const float cells = kTableSize / (2 * scale[s]), hidden_scale = share[s] * 4 * scale[s] * scale[s];
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t i = 4 * s + k, table = shell + corners.texel[k];
@@ -206,10 +190,10 @@ OccluderSamples OccluderField::samples(const Vec3& position) const {
       if (!hidden_.empty()) hidden += corners.weight[k] * hidden_scale * hidden_[table];
     }
   }
-  result.hidden_area = !hidden_.empty() ? hidden : rho > 1 ? kPi * here * here : 4;
+  result.hidden_area = !hidden_.empty() ? hidden : place.rho > 1 ? kPi * place.outline * place.outline : 4;
   // 2 sin² (a / 2) = 1 - cos a, with sin a = 1 / rho.
-  result.sin_half = rho > 1 ? 0.70710678f * here : 2;
-  result.cos_half = rho > 1 ? std::sqrt(1 - 0.5f * here * here) : 1;
+  result.sin_half = place.rho > 1 ? 0.70710678f * place.outline : 2;
+  result.cos_half = place.rho > 1 ? place.outline_cosine : 1;
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "base/core/context.h"
 #include "base/math/frame.h"
 #include "methods/square_lights/distance_table.h"
+#include "methods/square_lights/occluder_place.h"
 #include "trace/tracer.h"
 
 namespace sightline::square_lights {
@@ -21,17 +22,10 @@ struct OccluderFieldOptions {
   float solid = 0;      ///< radius of a ball about the centre within a solid object (solid_ball.h): rays into it are known to be hidden
 };
 
-/// The sampling of the space around an occluder [Zhou2005].
-inline constexpr int kShells = 16, kShellSize = 32;
-inline constexpr float kInnerShell = 0.4f, kOuterShell = 6;  ///< in bounding radii
 inline constexpr std::size_t kShellPoints = std::size_t{6} * kShellSize * kShellSize;
 inline constexpr std::size_t kFieldTables = kShells * kShellPoints;
-/// Radius of shell k in bounding radii: logarithmic, so that the occluder's angle changes alike from each to the next.
-float shell_radius(int k);
 /// Unit direction from the centre to the point of a shell that table `i` belongs to.
 Vec3 shell_direction(std::size_t i);
-/// Radius on the disk of a bounding sphere seen from `rho` radii away: sqrt(1 - cos asin(1 / rho)); 1 within 1 radius.
-float apparent_radius(float rho);
 /// Scale of each shell's tables: what half the edge of their square stands for on the disk; 1 = the whole disk.
 std::array<float, kShells> shell_zoom(const OccluderFieldOptions& options);
 
@@ -67,9 +61,12 @@ class OccluderField {
   float radius() const { return radius_; }
   const std::array<float, kShells>& zoom() const { return zoom_; }
   std::span<const std::int8_t> tables() const { return tables_; }
+  /// Asks memory for a table that will be looked into soon.
+  void prefetch(std::int32_t table) const;
   TableView table(std::size_t i) const { return TableView(tables_.data() + i * kTableCells, kTableCells); }
 
-  OccluderSamples samples(const Vec3& position) const;
+  OccluderSamples samples(const Vec3& position) const { return samples(occluder_place((position - center_) / radius_)); }
+  OccluderSamples samples(const OccluderPlace& place) const;
   /// D of the occluder's outline around unit direction c, in plane units of the map whose axis points at the occluder; kBeyondOccluder
   /// where the light cannot reach its bounding cone. Never so low that Eq. 9 would hide more of the square than the occluder's whole area.
   /// The scalar definition.

@@ -85,25 +85,10 @@ float PlanarOccluder::Seen::distance(const Vec3& c, float most) const {
   if (out_.empty()) return most;
   float outside = -1;
   for (const Vec3& out : out_) outside = std::max(outside, glm::dot(out, c));
-  return distance(outside, most);
-}
-
-float PlanarOccluder::Seen::distance(float outside, float most) {
   // An angle is no less than its sine. Where the square is hidden to its last corner it does not matter how far within it lies.
   const float least = outside * 0.70710678f;
   if (least >= most || least <= -most) return std::min(least, most);
   return std::min(most, std::asin(std::min(outside, 1.f)) * 0.70710678f);
-}
-
-void PlanarOccluder::Seen::outside(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                                   std::span<float> sines) const {
-  std::fill_n(sines.begin(), x.size(), -1.f);
-  for (const Vec3& out : out_) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const float sine = out.x * x[i] + out.y * y[i] + out.z * z[i];
-      sines[i] = sine > sines[i] ? sine : sines[i];
-    }
-  }
 }
 
 float PlanarOccluder::distance(const Vec3& position, const Vec3& c) const {

@@ -10,6 +10,8 @@
 
 namespace sightline::square_lights {
 
+struct LightSet;
+
 /// A convex polygon in world space.
 class PlanarOccluder {
  public:
@@ -21,10 +23,8 @@ class PlanarOccluder {
    public:
     /// As distance() has it, if less than `most`; else `most`. Where the square is hidden to its last corner, no more than minus `most`.
     float distance(const Vec3& c, float most) const;
-    /// The same from what outside() gave.
-    static float distance(float outside, float most);
-    /// For many directions, padded to kLanes: the greatest sine by which each lies outside of an edge.
-    void outside(std::span<const float> x, std::span<const float> y, std::span<const float> z, std::span<float> sines) const;
+    /// The same for all lights, `most` being r times `plane_scale`; as long as the lights are padded.
+    void distances(const LightSet& lights, float plane_scale, std::span<float> distances) const;
     bool is_edge_on() const { return out_.empty(); }
 
    private:

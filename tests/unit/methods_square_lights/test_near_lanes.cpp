@@ -59,7 +59,12 @@ TEST(NearLanes, NearLightsAreThoseWhoseConesMeet) {
   const Mat3 turn(Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 0));
   test::on_every_target([&] {
     for (const float distance : {0.5f, 1.5f, 9.f}) {  // within the sphere, near, far
-      const OccluderCone cone = occluder_cone(distance * f.direction() + Vec3(1, 2, 3), 1, Vec3(1, 2, 3));
+      OccluderLanes occluder;
+      occluder.add(distance * f.direction() + Vec3(1, 2, 3), 1, turn);
+      occluder.finish();
+      OccluderPlaces places;
+      occluder_places(occluder, Vec3(1, 2, 3), places);
+      const OccluderCone cone = places.cone(0);
       EXPECT_EQ(cone.inside, distance < 1);
       ActiveLights active;
       find_active(f.lights, f.direction(), 0.7f, f.value, -0.7f, active);

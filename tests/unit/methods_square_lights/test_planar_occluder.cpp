@@ -4,6 +4,7 @@
 
 #include "methods/square_lights/planar_occluder.h"
 #include "methods/square_lights/shade_lanes.h"
+#include "support/every_target.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -69,9 +70,6 @@ TEST(PlanarOccluder, ALimitOnTheDistanceChangesNothingBelowIt) {
       EXPECT_LE(seen.distance(c, 0.1f), -0.0999f);
       EXPECT_GE(seen.distance(c, 0.1f), d);
     }
-    float sine = 0;
-    seen.outside({&c.x, 1}, {&c.y, 1}, {&c.z, 1}, {&sine, 1});
-    EXPECT_EQ(PlanarOccluder::Seen::distance(sine, 0.1f), seen.distance(c, 0.1f));
   }
 }
 
@@ -91,6 +89,32 @@ TEST(PlanarOccluder, BentOrPiercedMeshesAreNone) {
   const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}};
   EXPECT_FALSE(PlanarOccluder::fit(line, 0));
   EXPECT_FALSE(PlanarOccluder::fit(std::vector<Vec3>(5, Vec3(1)), 0));
+}
+
+TEST(PlanarOccluder, AllLightsAtOnceAreAsFarAsOneByOne) {
+  const auto plane = PlanarOccluder::fit(rectangle(1, 2), 8);
+  ASSERT_TRUE(plane);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> radius(0.01f, 1.2f);
+  LightSet lights;
+  for (int i = 0; i < 500; ++i) lights.add({random_direction(random), radius(random), Color(1)});
+  lights.finish();
+  test::on_every_target([&] {
+    PlanarOccluder::Seen seen;
+    AlignedVector<float> distances(lights.x.size());
+    int hidden = 0;
+    for (const Vec3& position : {Vec3(0.2f, 0.7f, -0.3f), Vec3(3, -0.2f, 0.5f)}) {
+      plane->see(position, seen);
+      seen.distances(lights, 0.7f, distances);
+      for (std::size_t i = 0; i < lights.count; ++i) {
+        const float r_p = 0.7f * lights.r[i], expected = seen.distance(lights.light(i).center, r_p);
+        EXPECT_NEAR(distances[i], expected, 1e-6f);
+        hidden += expected < r_p;
+      }
+    }
+    EXPECT_GT(hidden, 100);
+    EXPECT_LT(hidden, 900);
+  });
 }
 
 }  // namespace
