@@ -20,6 +20,7 @@ const std::vector<FragmentCandidate>& fragment_ablations() {
       {"no additional samples", {"extra_samples=off"}},
       {"strict threshold", {"strict_threshold=on"}},
       {"64 rays a pixel", {"level0_rays=64"}},
+      {"the same rays under small lights and large", {"rays_by_size=off"}},
       {"no early out", {"early_out=off"}},
       {"probes averaged", {"probes=off"}},
       {"no confirmation", {"confirm=0"}},

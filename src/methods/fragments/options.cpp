@@ -67,13 +67,15 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.interpolate_probes = chosen(s.probes, ours) && probes;
   o.extra_samples = chosen(s.extra_samples, !fast) && probes;
   o.upsample.kind = kind_of(s.upsample, s.variant);
+  // Patches of probes are not made of additional samples; what is left to them is to contradict, where probes are far apart.
+  o.extra_level = o.upsample.kind == UpsampleOptions::Kind::quad4 ? 4 : 3;
   o.upsample.copy_levels = number(s.copy_levels, -1, ours ? 1 : 2);
   o.upsample.interpolate_probes = o.interpolate_probes;
   o.smooth = chosen(s.smooth, ours) && o.ratio;
   o.dark_culling = s.dark_culling;
   o.confirm = number(s.confirm, -1, ours && !fast ? 1 : 0);
   o.penumbra_level = number(s.penumbra_level, -1, ours && !fast ? 2 : 8);
-  o.near_rays = ours && !fast && probes && o.ratio && s.level0_rays == 0;
+  o.rays_by_size = chosen(s.rays_by_size, ours && !fast && probes && o.ratio && s.level0_rays == 0);
   o.border_rounds = o.ratio ? number(s.borders, -1, ours && !fast ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
   o.glossy = s.glossy == S::Glossy::ltc ? GlossyTerm::ltc : GlossyTerm::quadrature;

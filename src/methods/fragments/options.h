@@ -23,8 +23,9 @@ struct FragmentOptions {
   PointJitter jitter = PointJitter::blue;
   bool sparse_tests = true;  ///< small fragments trace a quarter of their rays first
   bool extra_samples = true;
+  int extra_level = 3;                  ///< of the smallest fragments that take them
   int confirm = 1;                      ///< probes that confirm a stable fragment of level 3 or more
-  bool near_rays = true;                ///< twice the rays where a light is large to the eye
+  bool rays_by_size = true;             ///< of pixels: twice as many where a light looks large, fewer where it looks small
   int penumbra_level = 2;               ///< stable fragments from this level on that partly see the light trace more rays
   int border_rounds = 3;                ///< how often fragments beside jumps of the signal are refined again
   float border_jump = 0.25f;            ///< in shares of the light

@@ -45,7 +45,7 @@ FragmentPicture::FragmentPicture(const RenderJob& job, const View& view, const F
   if (job.light_samples > 0) {
     options_.finest.rays = options_.finest.smooth_rays = options_.finest.crowded_rays =
         static_cast<std::uint32_t>(std::max(job.light_samples, 16));
-    options_.near_rays = false;
+    options_.rays_by_size = false;
   }
   if (options_.refine != FragmentOptions::Refine::all) lights_ = area_lights(world.lights(), kLights);
   const bool neighbours = options_.refine == FragmentOptions::Refine::neighbours;

@@ -18,7 +18,7 @@ namespace sightline {
 inline constexpr int kManyProbesLevel = 5;
 
 /// Up to this level a few rays may answer for a fragment: what they miss, neighbours mostly show.
-inline constexpr int kSparseLevel = 2;
+inline constexpr int kSparseLevel = 3;
 
 /// Pixel of the probe of quadrant `q`, or of the `sub`-th of its four from kManyProbesLevel on; moved into the picture.
 IVec2 probe_pixel(const GBuffer& g, const Fragment& f, int q, int sub = -1);

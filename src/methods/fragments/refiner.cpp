@@ -10,7 +10,6 @@ namespace sightline {
 namespace {
 
 constexpr int kConfirmLevel = 3;
-constexpr int kExtraLevel = 3;
 // Pixels that geometry made so small are lines here and there, or most of a picture: from this share of a root tile on they are the
 // picture.
 constexpr std::size_t kManyPixels = static_cast<std::size_t>(kRootSize) * kRootSize / 8;
@@ -20,8 +19,11 @@ constexpr std::size_t kCrowdedPixels = kManyPixels * 3;
 // or nothing.
 constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
 
-// Solid angle in steradians from which on a light is large, and how far apart pixels lie that are asked for it.
-constexpr float kLargeLight = 0.3f;
+// Solid angles in steradians from which on a light is large, and below which it is small; the least share of the rays that a small one
+// takes, and in what steps. With fewer than that dots appear in the rims of penumbrae.
+constexpr float kLargeLight = 0.3f, kUsualLight = 0.08f, kLeastShare = 0.625f;
+constexpr std::uint32_t kRayStep = 4;
+// How far apart pixels lie that are asked for it.
 constexpr int kSparsePixels = 8;
 
 }  // namespace
@@ -48,7 +50,7 @@ void Refiner::refine(const GBuffer& g, std::size_t index, std::span<const Fragme
   progress.children.assign(fragments.begin(), fragments.end());
   begin(index, sample);
   reach_.build(g, g.root(index), *light_);
-  large_light_ = progress.large_light = options_.near_rays && light_is_large(g, g.root(index));
+  light_angle_ = progress.light_angle = options_.rays_by_size ? light_angle(g, g.root(index)) : 0;
   reached_ = false;
   clear(g, g.root(index), signal);
   // What geometry left of level 0 has no neighbours to be smoothed with.
@@ -69,22 +71,35 @@ void Refiner::refine_borders(const GBuffer& g, std::size_t index, std::uint32_t 
       for (int x = f.x; x < x1; x += LightSignal::kBlock) signal.round_at(x, y) = static_cast<std::uint8_t>(round);
   }
   begin(index, sample);
-  large_light_ = progress.large_light;
+  light_angle_ = progress.light_angle;
   reached_ = true;  // stable fragments were tested, and so are their children
   refine_children(g, sample, signal, progress, statistics);
 }
 
-// Errors grow with what a light adds to a pixel, and with the number of edges before it: near a large light both are at their largest.
-bool Refiner::light_is_large(const GBuffer& g, const RootTile& tile) const {
+float Refiner::light_angle(const GBuffer& g, const RootTile& tile) const {
+  float largest = 0;
   for (int y = tile.y0; y < tile.y1; y += kSparsePixels) {
     for (int x = tile.x0; x < tile.x1; x += kSparsePixels) {
       const std::size_t at = g.at(x, y);
       if (g.kind[at] != PixelKind::diffuse && g.kind[at] != PixelKind::analytic) continue;
-      if (light_->solid_angle(load(g.position, at), load(g.geometric_normal, at)) > kLargeLight) return true;
+      largest = std::max(largest, light_->solid_angle(load(g.position, at), load(g.geometric_normal, at)));
+      if (largest > kLargeLight) return largest;
     }
   }
-  return false;
+  return largest;
 }
+
+// Noise sums up over penumbrae, which are as wide as the light looks: rays in proportion to that leave the same error in a picture under
+// small lights and large ones. Near a large light errors also grow with what it adds to a pixel, and with the number of edges before it.
+std::uint32_t Refiner::pixel_rays() const {
+  const std::uint32_t rays = options_.finest.smooth_rays;
+  if (!options_.rays_by_size) return rays;
+  if (light_angle_ > kLargeLight) return 2 * rays;
+  const float share = std::clamp(std::sqrt(light_angle_ / kUsualLight), kLeastShare, 1.f);
+  return std::max(static_cast<std::uint32_t>(std::lround(share * static_cast<float>(rays) / kRayStep)) * kRayStep, 16u);
+}
+
+int Refiner::penumbra_level() const { return light_angle_ > kLargeLight ? std::min(options_.penumbra_level, 1) : options_.penumbra_level; }
 
 void Refiner::begin(std::size_t index, std::uint32_t sample) {
   probes_.begin(static_cast<std::uint32_t>(index), sample);
@@ -232,7 +247,7 @@ void Refiner::write_stable(const GBuffer& g, LightSignal& signal) {
       penumbra_.push_back(static_cast<std::uint32_t>(g.at(pixel.x, pixel.y)));
       penumbra_at_.push_back(static_cast<std::uint32_t>(g.at(f.x + (q & 1 ? half : 0), f.y + (q & 2 ? half : 0))));
     }
-    if (!options_.extra_samples || f.level < kExtraLevel) continue;
+    if (!options_.extra_samples || f.level < options_.extra_level) continue;
     const int half = f.width() / 2;
     for (const IVec2 p : {IVec2(f.x, f.y), IVec2(f.x + half, f.y), IVec2(f.x, f.y + half)}) {
       if (!g.inside(p.x, p.y)) continue;

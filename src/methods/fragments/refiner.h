@@ -33,7 +33,7 @@ struct RefinementCounts {
 struct TileProgress {
   std::vector<Fragment> done;      ///< stable fragments that the light reaches
   std::vector<Fragment> children;  ///< to be refined next
-  bool large_light = false;        ///< the light fills much of the sky somewhere in the tile
+  float light_angle = 0;           ///< the largest solid angle of the light in the tile
 };
 
 /// Buffers of one thread.
@@ -75,9 +75,9 @@ class Refiner {
   void run_waves(const GBuffer& g, std::uint32_t sample, LightSignal& signal, PassStatistics& statistics);
   void classify(const GBuffer& g, LightSignal& signal);
   void split_to_pixels(const GBuffer& g, const Fragment& f, const ProbeMasks& masks, LightSignal& signal);
-  bool light_is_large(const GBuffer& g, const RootTile& tile) const;
-  std::uint32_t pixel_rays() const { return (large_light_ ? 2 : 1) * options_.finest.smooth_rays; }
-  int penumbra_level() const { return large_light_ ? std::min(options_.penumbra_level, 1) : options_.penumbra_level; }
+  float light_angle(const GBuffer& g, const RootTile& tile) const;
+  std::uint32_t pixel_rays() const;
+  int penumbra_level() const;
   std::uint64_t all_points() const { return points_->count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points_->count) - 1; }
   void confirm(const GBuffer& g, PassStatistics& statistics);
   void write_stable(const GBuffer& g, LightSignal& signal);
@@ -100,7 +100,7 @@ class Refiner {
   const PriorShares* prior_ = nullptr;
 
   ReachPyramid reach_;
-  bool large_light_ = false;
+  float light_angle_ = 0;
   bool reached_ = false;  ///< the light is known to reach all fragments at hand
   std::vector<Fragment> current_, children_, stable_, unconfirmed_, done_;
   std::vector<ProbeMasks> masks_, stable_masks_;

@@ -29,6 +29,7 @@ struct FragmentsSettings {
   int penumbra_level = -1;
   int rays = 16;
   int level0_rays = 0;
+  Switch rays_by_size = Switch::variant;
   int coarsest = 7;
   int copy_levels = -1;
   float tau_n = 0;
@@ -85,6 +86,8 @@ struct FragmentsSettings {
     visit("rays", &S::rays, {.help = "rays a probe: 16, or 32 or 64 for large lights", .minimum = 16, .maximum = 64, .symbol = "K"});
     visit("level0_rays", &S::level0_rays,
           {.help = "rays a pixel at the finest level; 0 = as the variant says", .minimum = 0, .maximum = 4096});
+    visit("rays_by_size", &S::rays_by_size,
+          {.help = "more rays a pixel where a light looks large, fewer where it looks small", .choices = {"variant", "off", "on"}});
     visit("coarsest", &S::coarsest,
           {.help = "level of the coarsest fragments, of 2^n pixels", .minimum = 1, .maximum = 7, .symbol = "M_max"});
     visit("copy_levels", &S::copy_levels,

@@ -265,6 +265,22 @@ TEST(FragmentPictures, OfGlossyFloorsLookLikeConvergedOnes) {
   }
 }
 
+// Lamps of the same power, seen under 0.007, 0.1 and 1.3 steradians at the most: 20, 32 and 64 rays a pixel in penumbrae.
+TEST(FragmentPictures, TraceMoreRaysAPixelTheLargerTheLightLooks) {
+  const auto rays_a_pixel = [](float half_width, const char* by_size) {
+    Scene scene = bare_floor(Occluder::box);
+    scene.lights.push_back({.name = "lamp", .shape = lamp({0.2f, 4, -0.1f}, half_width, Color(2 / (half_width * half_width))), .node = {}});
+    const Picture picture = fragments(shot_of(scene, {200, 134}), {by_size});
+    return picture.statistics.method_statistics.at("level0_rays") / picture.statistics.method_statistics.at("level0_fragments");
+  };
+  const auto change = [&](float half_width) {
+    return rays_a_pixel(half_width, "rays_by_size=on") / rays_a_pixel(half_width, "rays_by_size=off");
+  };
+  EXPECT_LT(change(0.17f), 0.85);
+  EXPECT_NEAR(change(0.65f), 1, 0.05);
+  EXPECT_GT(change(3), 1.3);
+}
+
 TEST(FragmentPictures, AreBlackWhereAllLightIsBlocked) {
   const Shot shot = shot_of(lamp_over_floor(Occluder::everything), {140, 60});
   for (const char* variant : {"variant=sightline", "variant=koa", "variant=nichols"})
