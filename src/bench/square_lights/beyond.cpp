@@ -17,12 +17,14 @@ struct Variant {
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> table = {
       {"as it is", {}},
-      {"occluders by least distance", {"combine=distance"}},
       {"coverage: mean over turns", {"coverage=average"}},
       {"coverage: by the gradient", {"coverage=gradient"}},
       {"light by pixel", {"shading=pixel"}},
       {"visibility by summed areas", {"tables=summed"}},
-      {"merged by least growth", {"merge=ward"}},
+      {"regions as merged", {"exchange=false"}},
+      {"regions as merged by moments", {"merge=moments", "exchange=false"}},
+      {"regions as the paper merges them", {"merge=paper", "exchange=false"}},
+      {"occluders by the product of what they leave", {"combine=product"}},
       {"squares split by the bound, 1 %", {"split=0.01"}},
       {"squares split by the bound, 0.1 %", {"split=0.001"}},
       {"no penalty of area", {"area_penalty=false"}},

@@ -95,8 +95,9 @@ FrameShading::FrameShading(const SquareBake& bake, const SquareLightsSettings& s
     for (std::size_t i = 0; i < bake.cube().count(); ++i) texel_solid_angle_.push_back(bake.cube().solid_angle(i));
   } else if (!bake.cube().texels.empty()) {
     LightSet own;
-    const std::vector<SquareLight> lights =
-        choice.kind == LightChoice::Kind::all_tables ? texel_lights(bake.cube()) : bake.tree().lights(choice.count);
+    const std::vector<SquareLight> texels =
+        choice.kind == LightChoice::Kind::all_tables ? texel_lights(bake.cube()) : std::vector<SquareLight>();
+    const std::span<const SquareLight> lights = texels.empty() ? bake.squares() : std::span(texels);
     own.reserve(lights.size());
     for (const SquareLight& light : lights) {
       if (!is_black(light.radiance)) own.add(light);

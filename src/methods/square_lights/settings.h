@@ -21,7 +21,8 @@ struct SquareLightsSettings {
   bool area_weighted = true;
   Shading shading = Shading::vertex;
   int cube = 32;
-  Merge merge = Merge::moments;
+  Merge merge = Merge::ward;
+  bool exchange = true;
   Storage storage = Storage::raw;
   int clusters = 256;
   int vectors = 8;
@@ -60,6 +61,9 @@ struct SquareLightsSettings {
           {.help = "next pair of regions: of least error once merged, of least growth of that, or of least growth of flux² times spread of "
                    "direction, with squares that have their region's first two moments",
            .choices = {"paper", "ward", "moments"}});
+    visit(
+        "exchange", &S::exchange,
+        {.help = "regions then exchange texels while that lessens flux² times spread of direction; squares have their first two moments"});
     visit("storage", &S::storage, {.help = "distance tables as bytes, or as clustered principal components", .choices = {"raw", "cpca"}});
     visit("clusters", &S::clusters, {.help = "cpca: clusters of a receiver's tables", .minimum = 1, .maximum = 65535, .symbol = "K"});
     visit("vectors", &S::vectors, {.help = "cpca: eigenvectors a cluster", .minimum = 0, .maximum = 64, .symbol = "n'"});

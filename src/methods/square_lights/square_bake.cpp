@@ -213,6 +213,15 @@ void SquareBake::make_lights(const World& world, const SquareLightsSettings& set
   cube_ = {settings.cube, {texels.begin(), texels.end()}};
   tree_ = MergeTree({nodes.begin(), nodes.end()}, texels.size());
   bytes_ += view->bytes();
+  const LightChoice choice = parse_lights(settings.lights);
+  if (choice.kind != LightChoice::Kind::count) return;
+  // Splitting at a vertex goes on along the tree, whose regions it has to find.
+  const bool exchange = settings.exchange && settings.split == 0;
+  hash.add(choice.count).add(exchange);
+  squares_ = store.recent().get<TexelExchange>({"square-lights.squares", kLightsVersion, hash.key()}, [&] {
+    if (exchange) return exchange_texels(cube_, tree_, choice.count);
+    return TexelExchange{.lights = tree_.lights(choice.count)};
+  });
 }
 
 void SquareBake::make_tables(const World& world, const SquareLightsSettings& settings, BakeStore& store, const Context& context) {

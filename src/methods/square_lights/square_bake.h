@@ -19,6 +19,7 @@
 #include "methods/square_lights/shading_scene.h"
 #include "methods/square_lights/sharp_lobe.h"
 #include "methods/square_lights/source_field.h"
+#include "methods/square_lights/texel_exchange.h"
 
 namespace sightline::square_lights {
 
@@ -83,6 +84,8 @@ class SquareBake final : public Bake {
   const ShadingScene& scene() const { return scene_; }
   const LightCube& cube() const { return cube_; }
   const MergeTree& tree() const { return tree_; }
+  /// The squares that the environment is split into; empty where `lights` is no number.
+  std::span<const SquareLight> squares() const { return squares_ ? std::span(squares_->lights) : std::span<const SquareLight>(); }
   const Mat3& world_from_environment() const { return world_from_environment_; }
   const VertexTables& tables(std::size_t object) const { return tables_[object]; }
   const std::vector<Occluder>& occluders() const { return occluders_; }
@@ -116,6 +119,7 @@ class SquareBake final : public Bake {
   ShadingScene scene_;
   LightCube cube_;
   MergeTree tree_;
+  std::shared_ptr<const TexelExchange> squares_;
   Mat3 world_from_environment_{1};
   std::vector<VertexTables> tables_;
   std::vector<Occluder> occluders_;

@@ -13,6 +13,7 @@
 #include "base/sample/warp.h"
 #include "methods/square_lights/merge_tree.h"
 #include "methods/square_lights/square_fit.h"
+#include "methods/square_lights/texel_exchange.h"
 
 namespace sightline::square_lights {
 namespace {
@@ -429,6 +430,89 @@ TEST(MergeTree, MomentsTellSmoothTransportTheTruth) {
   const double by_moments = error_of(MergeOptions::Criterion::moments), by_paper = error_of(MergeOptions::Criterion::paper);
   EXPECT_LT(by_moments, 0.5 * by_paper);
   EXPECT_LT(by_moments, 1e-3);
+}
+
+/// Sum over regions and channels of flux² times mean squared distance from the centroid of luminance, from its definition.
+double direction_error(const LightCube& cube, std::span<const std::uint32_t> region, std::size_t count) {
+  std::vector<Vec3d> centroid(count, Vec3d(0));
+  for (std::size_t t = 0; t < cube.count(); ++t)
+    centroid[region[t]] += static_cast<double>(cube.solid_angle(t)) * luminance(cube.texels[t]) * Vec3d(cube.center(t));
+  std::vector<glm::dvec3> flux(count, glm::dvec3(0)), spread(count, glm::dvec3(0));
+  for (std::size_t t = 0; t < cube.count(); ++t) {
+    const Vec3d offset = Vec3d(cube.center(t)) - glm::normalize(centroid[region[t]]);
+    const glm::dvec3 own = static_cast<double>(cube.solid_angle(t)) * glm::dvec3(cube.texels[t]);
+    flux[region[t]] += own, spread[region[t]] += own * (glm::dot(offset, offset) + cube.solid_angle(t) / 6);
+  }
+  double sum = 0;
+  for (std::size_t r = 0; r < count; ++r) sum += glm::dot(glm::dvec3(0.3, 0.5, 0.2), flux[r] * spread[r]);
+  return sum;
+}
+
+TEST(TexelExchange, LessensTheErrorAndKeepsAllLight) {
+  const LightCube cube = sky_cube(16);
+  const Context context;
+  for (const auto criterion : kCriteria) {
+    const MergeTree tree = MergeTree::build(cube, {criterion, true}, context);
+    for (const std::size_t count : {std::size_t{7}, std::size_t{30}, std::size_t{200}}) {
+      const TexelExchange exchange = exchange_texels(cube, tree, count);
+      ASSERT_EQ(exchange.lights.size(), count);
+      ASSERT_EQ(exchange.region.size(), cube.count());
+      EXPECT_LT(exchange.after, exchange.before);
+      EXPECT_NEAR(exchange.after / direction_error(cube, exchange.region, count), 1, 1e-4);  // centres of texels are floats
+      EXPECT_GT(exchange.sweeps, 0);
+      std::vector<int> size(count, 0);
+      for (const std::uint32_t region : exchange.region) ++size.at(region);
+      EXPECT_GT(*std::ranges::min_element(size), 0);
+      Color sum(0);
+      for (const SquareLight& light : exchange.lights) sum += light.solid_angle() * light.radiance;
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / cube.integral()[c], 1, 1e-4);
+    }
+  }
+}
+
+// A cut through a bright patch that merging of faces cannot undo: two regions of one light each end up with a half of their own.
+TEST(TexelExchange, FindsTheSidesOfTwoSources) {
+  LightCube cube;
+  cube.size = 8;
+  cube.texels.assign(6 * 64, Color(0));
+  std::vector<MergeNode> nodes(2 * cube.count() - 2);
+  const std::vector<std::size_t> left{8 + 1, 8 + 2, 16 + 1, 16 + 2}, right{40 + 5, 40 + 6, 48 + 5, 48 + 6};
+  for (const std::size_t t : left) cube.texels[t] = Color(1);
+  for (const std::size_t t : right) cube.texels[t] = Color(1);
+  // One region has all but a texel of the first face and the other five; the other that texel alone.
+  std::size_t next = cube.count();
+  std::int32_t top = 0;
+  const std::size_t alone = right[0];
+  for (std::size_t t = 1; t < cube.count(); ++t) {
+    if (t == alone) continue;
+    nodes[next].left = top, nodes[next].right = static_cast<std::int32_t>(t);
+    top = static_cast<std::int32_t>(next++);
+  }
+  ASSERT_EQ(next, nodes.size());
+  const TexelExchange exchange = exchange_texels(cube, MergeTree(nodes, cube.count()), 2);
+  for (const std::size_t t : right) EXPECT_EQ(exchange.region[t], exchange.region[alone]);
+  for (const std::size_t t : left) EXPECT_NE(exchange.region[t], exchange.region[alone]);
+}
+
+TEST(TexelExchange, OneTexelARegionStaysWhatItIs) {
+  const LightCube cube = sky_cube(4);
+  const Context context;
+  const TexelExchange exchange = exchange_texels(cube, MergeTree::build(cube, {}, context), cube.count());
+  EXPECT_EQ(exchange.before, exchange.after);
+  for (std::size_t t = 0; t < cube.count(); ++t) EXPECT_LT(glm::length(exchange.lights[exchange.region[t]].center - cube.center(t)), 1e-6f);
+}
+
+TEST(TexelExchange, BlackMapsHaveBlackLights) {
+  LightCube cube;
+  cube.size = 4;
+  cube.texels.assign(6 * 16, Color(0));
+  const Context context;
+  const TexelExchange exchange = exchange_texels(cube, MergeTree::build(cube, {}, context), 10);
+  ASSERT_EQ(exchange.lights.size(), 10u);
+  for (const SquareLight& light : exchange.lights) {
+    EXPECT_EQ(light.radiance, Color(0));
+    EXPECT_TRUE(std::isfinite(light.radius));
+  }
 }
 
 TEST(MergeTree, BlackMapsMergeAllTheSame) {
