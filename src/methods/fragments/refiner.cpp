@@ -21,7 +21,7 @@ constexpr float kPenumbraNoise = 0.25f, kPlainNoise = 0.06f;
 
 // Solid angles in steradians from which on a light is large, and below which it is small; the least share of the rays that a small one
 // takes, and in what steps. With fewer than that dots appear in the rims of penumbrae.
-constexpr float kLargeLight = 0.3f, kUsualLight = 0.08f, kLeastShare = 0.625f;
+constexpr float kLargeLight = 0.3f, kUsualLight = 0.06f, kLeastShare = 0.625f;
 constexpr std::uint32_t kRayStep = 4;
 // How far apart pixels lie that are asked for it.
 constexpr int kSparsePixels = 8;
