@@ -49,12 +49,25 @@ HWY_INLINE V3 Texel(D d, DI di, const EnvironmentPicture& picture, VI x, VI y) {
   return {red, hn::GatherIndex(d, picture.values + 1, at), hn::GatherIndex(d, picture.values + 2, at)};
 }
 
-// EnvironmentMap::radiance_uv() of environment_uv().
-HWY_INLINE V3 LatLong(D d, const EnvironmentPicture& picture, const V3& w) {
-  const DI di;
+// environment_uv().
+HWY_INLINE void LatLongPlace(D d, const V3& w, V& u, V& v) {
   const V sine = hn::Sqrt(hn::Add(hn::Mul(w.x, w.x), hn::Mul(w.z, w.z)));
-  const V u = hn::Add(hn::Set(d, 0.5f), hn::Mul(ArcTan2(d, w.x, hn::Neg(w.z)), hn::Set(d, 0.5f * kInvPi)));
-  const V v = hn::Mul(ArcTan2(d, sine, w.y), hn::Set(d, kInvPi));
+  u = hn::Add(hn::Set(d, 0.5f), hn::Mul(ArcTan2(d, w.x, hn::Neg(w.z)), hn::Set(d, 0.5f * kInvPi)));
+  v = hn::Mul(ArcTan2(d, sine, w.y), hn::Set(d, kInvPi));
+}
+HWY_INLINE void AngularPlace(D d, const V3& w, V& u, V& v) {
+  const V sine = hn::Sqrt(hn::Add(hn::Mul(w.x, w.x), hn::Mul(w.y, w.y))), half = hn::Set(d, 0.5f);
+  const V radius = hn::Mul(ArcTan2(d, sine, hn::Neg(w.z)), hn::Set(d, kInvPi)), one = hn::Set(d, 1.f);
+  const M off_axis = hn::Gt(sine, hn::Zero(d));
+  const V safe = hn::IfThenElse(off_axis, sine, one);
+  const V x = hn::IfThenElse(off_axis, hn::Div(w.x, safe), one), y = hn::IfThenElseZero(off_axis, hn::Div(w.y, safe));
+  u = hn::Add(half, hn::Mul(hn::Mul(half, radius), x));
+  v = hn::Sub(half, hn::Mul(hn::Mul(half, radius), y));
+}
+
+// EnvironmentMap::radiance_uv().
+HWY_INLINE V3 Between(D d, const EnvironmentPicture& picture, V u, V v) {
+  const DI di;
   const auto place = [&](V at, int count) {
     const V inside = hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, 1.f));
     return hn::Sub(hn::Mul(inside, hn::Set(d, static_cast<float>(count))), hn::Set(d, 0.5f));
@@ -62,14 +75,27 @@ HWY_INLINE V3 LatLong(D d, const EnvironmentPicture& picture, const V3& w) {
   const V x = place(u, picture.width), y = place(v, picture.height);
   const V left = hn::Floor(x), top = hn::Floor(y), fx = hn::Sub(x, left), fy = hn::Sub(y, top), one = hn::Set(d, 1.f);
   const VI i = hn::ConvertTo(di, left), j = hn::ConvertTo(di, top), next = hn::Add(i, hn::Set(di, 1)), width = hn::Set(di, picture.width);
-  // Columns go on at the other side, rows do not.
-  const VI x0 = Clamped(di, hn::IfThenElse(hn::Lt(i, hn::Zero(di)), hn::Add(i, width), i), picture.width);
-  const VI x1 = Clamped(di, hn::IfThenElse(hn::Lt(next, width), next, hn::Sub(next, width)), picture.width);
+  VI x0 = i, x1 = next;
+  // Columns of latitude and longitude go on at the other side; rows, and what is outside of a disk, do not.
+  if (picture.mapping == EnvironmentMapping::latlong) {
+    x0 = hn::IfThenElse(hn::Lt(i, hn::Zero(di)), hn::Add(i, width), i);
+    x1 = hn::IfThenElse(hn::Lt(next, width), next, hn::Sub(next, width));
+  }
+  x0 = Clamped(di, x0, picture.width), x1 = Clamped(di, x1, picture.width);
   const VI y0 = Clamped(di, j, picture.height), y1 = Clamped(di, hn::Add(j, hn::Set(di, 1)), picture.height);
   const auto mix = [&](const V3& a, const V3& b, V t) { return add3(scale3(a, hn::Sub(one, t)), scale3(b, t)); };
   const V3 upper = mix(Texel(d, di, picture, x0, y0), Texel(d, di, picture, x1, y0), fx);
   const V3 lower = mix(Texel(d, di, picture, x0, y1), Texel(d, di, picture, x1, y1), fx);
   return mix(upper, lower, fy);
+}
+
+HWY_INLINE V3 Picture(D d, const EnvironmentPicture& picture, const V3& w) {
+  V u, v;
+  if (picture.mapping == EnvironmentMapping::angular)
+    AngularPlace(d, w, u, v);
+  else
+    LatLongPlace(d, w, u, v);
+  return Between(d, picture, u, v);
 }
 
 // EnvironmentMap::cube_texel().
@@ -103,7 +129,7 @@ void EnvironmentRadiance(const EnvironmentPicture& picture, const Vec3Batch& dir
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const V3 w = load3(d, direction, i);
     const V3 local{dot3(to_x, w), dot3(to_y, w), dot3(to_z, w)};
-    const V3 color = picture.mapping == EnvironmentMapping::cube ? Cube(d, picture, local) : LatLong(d, picture, local);
+    const V3 color = picture.mapping == EnvironmentMapping::cube ? Cube(d, picture, local) : Picture(d, picture, local);
     store3(d, mul3(scale, color), radiance, i);
   }
 }
@@ -116,7 +142,7 @@ namespace sightline {
 HWY_EXPORT(EnvironmentRadiance);
 
 bool EnvironmentPicture::has_lanes() const {
-  const bool known = mapping == EnvironmentMapping::latlong || mapping == EnvironmentMapping::cube;
+  const bool known = mapping != EnvironmentMapping::octahedral;
   return known && std::int64_t{width} * height * channels <= std::numeric_limits<std::int32_t>::max();
 }
 

@@ -17,12 +17,12 @@ struct EnvironmentPicture {
   Mat3 local_from_world{1};
   Color scale{1};
 
-  /// Maps of latitude and longitude and cubes, as long as their values can be counted with 31 bits.
+  /// All mappings but the octahedral one, as long as their values can be counted with 31 bits.
   bool has_lanes() const;
 };
 
 /// Of `count` unit directions in arrays padded to kLanes; grows `radiance` if needed. Of cubes bit for bit what single look-ups give; of
-/// maps of latitude and longitude the angles' last digits may differ.
+/// the others the angles' last digits may differ.
 void environment_radiance(const EnvironmentPicture& picture, const Vec3Batch& direction, std::size_t count, Vec3Batch& radiance);
 
 }  // namespace sightline
