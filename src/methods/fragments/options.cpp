@@ -75,7 +75,8 @@ FragmentOptions resolve(const FragmentsSettings& s) {
   o.dark_culling = s.dark_culling;
   o.confirm = number(s.confirm, -1, ours && !fast ? 1 : 0);
   o.penumbra_level = number(s.penumbra_level, -1, ours && !fast ? 2 : 8);
-  o.rays_by_size = chosen(s.rays_by_size, ours && !fast && probes && o.ratio && s.level0_rays == 0);
+  // Nothing else knows how large the light looks.
+  o.rays_by_size = probes && chosen(s.rays_by_size, ours && !fast && o.ratio && s.level0_rays == 0);
   o.border_rounds = o.ratio ? number(s.borders, -1, ours && !fast ? 3 : 0) : 0;
   o.nichols_threshold = s.nichols_threshold;
   o.glossy = s.glossy == S::Glossy::ltc ? GlossyTerm::ltc : GlossyTerm::quadrature;

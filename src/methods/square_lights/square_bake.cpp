@@ -214,7 +214,7 @@ void SquareBake::make_lights(const World& world, const SquareLightsSettings& set
   tree_ = MergeTree({nodes.begin(), nodes.end()}, texels.size());
   bytes_ += view->bytes();
   const LightChoice choice = parse_lights(settings.lights);
-  if (choice.kind != LightChoice::Kind::count) return;
+  if (choice.kind != LightChoice::Kind::count || settings.basis == SquareLightsSettings::Basis::haar) return;
   // Splitting at a vertex goes on along the tree, whose regions it has to find.
   const bool exchange = settings.exchange && settings.split == 0;
   hash.add(choice.count).add(exchange);

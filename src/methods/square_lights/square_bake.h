@@ -84,7 +84,7 @@ class SquareBake final : public Bake {
   const ShadingScene& scene() const { return scene_; }
   const LightCube& cube() const { return cube_; }
   const MergeTree& tree() const { return tree_; }
-  /// The squares that the environment is split into; empty where `lights` is no number.
+  /// The squares that the environment is split into; empty where `lights` is no number, or one of wavelets.
   std::span<const SquareLight> squares() const { return squares_ ? std::span(squares_->lights) : std::span<const SquareLight>(); }
   const Mat3& world_from_environment() const { return world_from_environment_; }
   const VertexTables& tables(std::size_t object) const { return tables_[object]; }

@@ -279,6 +279,12 @@ TEST(FragmentPictures, TraceMoreRaysAPixelTheLargerTheLightLooks) {
   EXPECT_LT(change(0.17f), 0.85);
   EXPECT_NEAR(change(0.65f), 1, 0.05);
   EXPECT_GT(change(3), 1.3);
+  // Its rival by neighbours does not look at the size.
+  const Study& study = Study::of_box();
+  const auto by_neighbours = [&](const char* by_size) {
+    return fragments(study.shot, {"refine=nichols", by_size}).statistics.method_statistics.at("level0_rays");
+  };
+  EXPECT_EQ(by_neighbours("rays_by_size=on"), by_neighbours("rays_by_size=off"));
 }
 
 TEST(FragmentPictures, AreBlackWhereAllLightIsBlocked) {
