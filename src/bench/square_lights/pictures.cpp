@@ -8,6 +8,7 @@
 #include "bench/square_lights/parts.h"
 #include "bench/square_lights/sphere_maps.h"
 #include "bench/thumbnail.h"
+#include "methods/square_lights/texel_exchange.h"
 #include "session/material_option.h"
 
 namespace sightline {
@@ -56,17 +57,19 @@ class Figure {
   float exposure_ = 0;
 };
 
-/// Figure 6: the environment, its regions, its squares.
+/// Figure 6: the environment, its regions, its squares, as the method's defaults have them.
 void light_figure(const SquareStage& stage, const SquareBenchShared& shared, std::vector<BenchPicture>& pictures, const Context& context) {
   const BuiltView view = build_stage(stage, 0, context);
   const square_lights::LightCube cube = bench_light_cube(*view.world, cube_size(shared.options), context);
-  const square_lights::MergeTree tree = square_lights::MergeTree::build(cube, {}, context);
+  const square_lights::MergeTree tree =
+      square_lights::MergeTree::build(cube, {square_lights::MergeOptions::Criterion::ward, true}, context);
   const ColorImage light = cube_picture(cube);
   const float exposure = viewing_exposure(light);
   pictures.push_back({fmt::format("Figure 6, {}: the cube map", stage.name), fmt::format("{} texels", cube.count()), light, exposure});
   for (const std::size_t count : {std::size_t{30}, std::size_t{100}}) {
-    pictures.push_back({fmt::format("Figure 6, {}: {} regions", stage.name, count), "", region_picture(cube, tree, count), 0.f});
-    pictures.push_back({fmt::format("Figure 6, {}: {} squares", stage.name, count), "", square_picture(tree, count), exposure});
+    const square_lights::TexelExchange exchange = square_lights::exchange_texels(cube, tree, count);
+    pictures.push_back({fmt::format("Figure 6, {}: {} regions", stage.name, count), "", region_picture(cube, exchange.region), 0.f});
+    pictures.push_back({fmt::format("Figure 6, {}: {} squares", stage.name, count), "", square_picture(exchange.lights), exposure});
   }
 }
 

@@ -48,8 +48,8 @@ ColorImage cube_picture(const LightCube& cube) {
 }
 
 ColorImage region_picture(const LightCube& cube, const MergeTree& tree, std::size_t count) {
-  std::vector<std::size_t> region(cube.count());
-  std::size_t index = 0;
+  std::vector<std::uint32_t> region(cube.count());
+  std::uint32_t index = 0;
   for (const std::int32_t root : tree.cut(count)) {
     std::vector<std::int32_t> below = {root};
     while (!below.empty()) {
@@ -63,16 +63,22 @@ ColorImage region_picture(const LightCube& cube, const MergeTree& tree, std::siz
     }
     ++index;
   }
+  return region_picture(cube, region);
+}
+
+ColorImage region_picture(const LightCube& cube, std::span<const std::uint32_t> region) {
   return picture_of([&](const Vec3& d) { return region_color(region[cube.texel_of(d)]); });
 }
 
-ColorImage square_picture(const MergeTree& tree, std::size_t count) {
+ColorImage square_picture(const MergeTree& tree, std::size_t count) { return square_picture(tree.lights(count)); }
+
+ColorImage square_picture(std::span<const SquareLight> lights) {
   struct Placed {
     SquareLight light;
     Frame3 frame;
   };
   std::vector<Placed> placed;
-  for (const SquareLight& light : tree.lights(count)) {
+  for (const SquareLight& light : lights) {
     const Vec3 east = std::fabs(light.center.y) < 0.999f ? glm::cross(Vec3(0, 1, 0), light.center) : Vec3(1, 0, 0);
     placed.push_back({light, frame_from_normal_tangent(light.center, glm::normalize(east))});
   }
